@@ -41,7 +41,7 @@ from beamdyn.scene.validity import check_speeds
 _FINE = 0.05  # arc length of a step, small enough for smooth curves in a plot
 _MOST_POINTS = 2000  # largest number of points of a branch
 _STEEPEST = 2 * np.pi  # largest slope angle [rad] up to which a branch is continued
-_UNSTABLE = "the straight beam, of which effects are judged, is unstable"
+_UNSTABLE = "the straight beam, for which effects are estimated, is unstable"
 _JUST_BELOW = 1 - 1e-9  # ratio of the last listed speed of the stable straight beam to its critical speed
 _ROUNDING = 1e-13  # rounding error of a position, relative to the length
 # Relative rounding error of loads and stiffness, which deflects the beam much more near buckling.
@@ -197,7 +197,7 @@ def equilibrium(
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
-    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable equilibrium next to it'
+    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable one on the opposite side'
     said = "the equilibrium is unstable ", at, f": a small motion grows at {growth:.3g} 1/s; {remedy}"
     rate = {"quantity": "growth rate [1/s]", "value": growth, "limit": 0.0}
     unstable = Statement(*said, kind=GROWING, remedy=remedy, **rate)

@@ -381,7 +381,7 @@ class CoupledRitzPart(RitzPart):
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """Build the forms of tension by speed, by root acceleration, mass, and mass moving in a direction."""
+        """Build the forms of tension by speed, by root acceleration, mass, mass moving in a `direction`."""
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T
@@ -391,7 +391,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def twisting(self) -> np.ndarray:
-        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w') dx."""
+        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w') dx, v along e1 and w along e2."""
         across = np.stack([-self.bending[:, 1], self.bending[:, 0]], axis=1)
         form = -np.tensordot(self.slope[..., :-1] * self.quadrature.weights, across, ((1, 2), (1, 2)))
         return (form + form.T) / 2

@@ -81,7 +81,7 @@ class Physics:
     large_deflection: Annotated[bool, Described(meaning="slopes and angles of any size")] = False
     branch: Annotated[
         Literal["straight", "bent"],
-        Described(meaning="equilibria of large deflection: those reached from rest, or those beside them"),
+        Described(meaning="equilibria of large deflection: reached from rest, or bent to the other side"),
     ] = "straight"
     camber: Annotated[
         bool, Described(meaning="camber of a rectangular section, which a clamped root hinders")

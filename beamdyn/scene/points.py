@@ -77,7 +77,9 @@ class TipMass:
     ] = 0.0
     offset_across: Annotated[
         float,
-        Described("m", "e_2", "distance of its centre of gravity beside the axis, in the direction across"),
+        Described(
+            "m", "e_2", "distance of its centre of gravity from the axis, across the direction of bending"
+        ),
     ] = field(default=0.0, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
@@ -107,7 +109,7 @@ class TipMass:
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
 
     def about(self, across: float) -> TipMass:
-        """Return the body with inertias about an axis shifted by `across` [m] in the second direction."""
+        """Return the body with inertias about an axis shifted by `across` [m], in the second direction."""
         if self.offset_across == across:
             return self
         more = self.mass * (self.offset_across - across) ** 2

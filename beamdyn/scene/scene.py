@@ -356,7 +356,7 @@ def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
 def _check_layers(beam: Beam, physics: Physics) -> None:
     """Refuse torsion of sections with piezoelectric layers, unless the beam has a torsional stiffness."""
     if beam.electrodes is not None and beam.torsion_stiffness is None and physics.torsion:
-        bound = "it is not modelled of sections with piezoelectric layers"
+        bound = "it is not modelled for sections with piezoelectric layers"
         raise InvalidValue("physics.torsion", True, bound, "leave it out")
 
 

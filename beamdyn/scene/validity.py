@@ -54,8 +54,8 @@ def refuse_bending_in_space(scene: Scene) -> None:
 def refuse_tip_load(scene: Scene) -> None:
     """Refuse a load at the tip in an analysis that models rotation alone (an `InvalidValue`)."""
     if scene.tip_load.acts:
-        bound = "this analysis knows loads by the motion of the carrier alone"
-        remedy = "equilibria, modes, loci and transients have it"
+        bound = "this analysis models only loads by the motion of the carrier"
+        remedy = "equilibria, modes, loci and transients model a load at the tip"
         raise InvalidValue("tip_load.force", scene.tip_load.force, bound, remedy)
 
 

@@ -407,7 +407,7 @@ class Offsets:
                 yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
     def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
-        """Yield coefficients of mass and tension offsets in the work on a motion, with powers of x.
+        """Yield, by quantity of root motion, offsets' coefficients in the work on a motion, and powers of x.
 
         The work of the axial force, which acts at the centre of tension, is a separate load.
         """

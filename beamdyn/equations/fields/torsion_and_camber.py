@@ -239,7 +239,7 @@ class SectionField(Field):
         return replace(scene, beam=beam, physics=replace(scene.physics, **{self.name: True}))
 
     def numbers(self, count: int) -> range:
-        """Return the numbers k of this field's functions, of `count` functions across beyond the mean."""
+        """Return those numbers k of functions across the width, from 1 to `count`, that this field has."""
         return range(self.first, count + 1, 2)
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
