@@ -434,7 +434,7 @@ def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
     For an angle of at most `turn` from the middle of its range, interpolation in Chebyshev points has an
     error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that rotates curvatures is then
     R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E
-    grows at most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
+    grows at most by the square root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
     """
     for degree in range(_MOST_DEGREE):
         error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))

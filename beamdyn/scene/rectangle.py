@@ -266,7 +266,7 @@ class Laminate(Rectangle):
     Parameters
     ----------
     along : Profile
-        Poisson's ratio over x/L, D12/D11 under the layers.
+        Poisson's ratio over x/L; under the layers the ratio D12/D11 of the plate's bending stiffnesses.
     free : Profile
         Bending stiffness of a section that cambers freely, over that of the beam model, which neglects that
         strip and layers have to camber together.

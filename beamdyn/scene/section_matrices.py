@@ -25,9 +25,7 @@ SIZE = 6
 UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of the upper triangle
 _FORCES = 3  # number of rows of forces; the others are of moments
 LEAST = 1e-10  # smallest accepted eigenvalue of a positive definite matrix scaled to a diagonal of 1
-MOST_ASYMMETRY = (
-    1e-4  # largest difference of two symmetric entries, over the root of their diagonal entries' product
-)
+MOST_ASYMMETRY = 1e-4  # largest accepted asymmetry of a matrix scaled to a diagonal of 1
 # A row is reported if its component of the least eigenvalue's eigenvector is above this part of the largest.
 _PART = 0.1
 MOST_STRANGENESS = 1e-4  # largest accepted difference, scaled, of a mass matrix from that of a rigid section

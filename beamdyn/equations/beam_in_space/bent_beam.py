@@ -276,7 +276,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _root(self) -> BentBeam:
-        """Arc that models the sprung root, at these coordinates; its end is the root of the beam."""
+        """Arc that models the sprung root, at these coordinates; its end is the beam's root."""
         return self.beam.arc.at(self.q)
 
     @cached_property

@@ -43,7 +43,7 @@ from beamdyn.scene.sections import offset_components
 _AXES = np.eye(3)
 _KEPT = 4  # number of recently computed states of the beam that are cached
 _SIGNS = 1.0, 1.0, 1.0, -1.0, -1.0, 1.0  # -1 for strains whose field rotates sections about a negative axis
-# Direction of the deflection that each block of a bent beam describes, by name of the block.
+# Words for the two directions of deflection, which end the names of a bent beam's deflections.
 _DIRECTIONS = "in the direction of bending", "across"
 _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
 # Quantities of root motion that load the beam.

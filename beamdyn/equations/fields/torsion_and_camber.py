@@ -30,7 +30,7 @@ a Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
 
 The factor c = 3 J/(b t^3) makes torsion that of a rectangle of finite width, whose constant J is
 Saint-Venant's.  In torsion, w_xx^2 has the factor g, the ratio of the section's warping constant to that of a
-thin one, and 2 nu w_xx w_yy has the root of g; in thick sections nu is a smaller ratio (`Rectangle`), and
+thin one, and 2 nu w_xx w_yy has sqrt(g); in thick sections nu is a smaller ratio (`Rectangle`), and
 torsion also has the rotary inertia of the thickness.  Rotation at the speed omega about
 the unit vector a adds
 
