@@ -327,9 +327,9 @@ class Discretization(Protocol):
        (`FieldsOnly`).
     3. All physics is in the displacement fields (`beamdyn.equations.fields`); a function space only
        integrates and evaluates.
-    4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its distance
+    4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its difference
        from that of `coarser`; a tolerance is met by repeating `finer`.  Where functions of a space span those
-       of the coarser one, its `coarse` names them, and the coarser equations are a part of these.
+       of the coarser one, its `coarse` has their indices, and the coarser equations are a part of these.
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
        `converges_regularly` tells whether errors can be estimated without a further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line

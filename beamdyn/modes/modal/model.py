@@ -73,10 +73,10 @@ class Model(FieldsOnly):
         return self._in_functions_of(self.scene.modelled_beam)
 
     def equations_near(self, scene: Scene) -> Equations:
-        """Build the equations of a scene that differs little, in the same functions where these suit it.
+        """Build the equations of a scene that differs little, in this model's functions where they suit it.
 
-        Matrices of nearby scenes then change smoothly.  Functions of bending moments, which depend on all
-        properties of the beam, may otherwise be others after the smallest change.
+        Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
+        properties of the beam, may differ abruptly after the smallest change of these.
         """
         nearby = Model(scene, self.discretization)
         beam = self.scene.modelled_beam
