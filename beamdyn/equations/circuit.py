@@ -42,14 +42,14 @@ class Circuit:
     Parameters
     ----------
     coupling : ndarray, shape (n,)
-        Coupling theta [N/V per coordinate].
+        Generalised force theta on each coordinate by a unit voltage [N/V].
     capacitance : float
         Capacitance Cp [F].
     resistance : float
         Load resistance R [ohm].
     bent : dict of str to ndarray
-        Residual flexibility g of each field: static deflection by a unit voltage of modes not in the
-        coordinates.
+        Residual flexibility g of each field: static deflection by a unit voltage of the modes that are not
+        among the coordinates.
     """
 
     coupling: np.ndarray
@@ -60,7 +60,7 @@ class Circuit:
 
 @dataclass(frozen=True)
 class Voltage:
-    """Voltage [V] or other output: coefficients (n,) times n coordinates (order 0) or rates (order 1)."""
+    """Voltage [V] or other output: `row` (n,) times the coordinates (order 0) or their rates (order 1)."""
 
     order: int
     row: np.ndarray
@@ -75,7 +75,7 @@ def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
 def coupling_of(
     beam: Beam, deflections: Mapping[str, Deflection], sections: Iterable[tuple[str, SectionFunctions]]
 ) -> dict[str, np.ndarray]:
-    """Compute theta of each field: the work of the moment by a unit voltage, per function of the field.
+    """Compute the coupling of each field: work of the moment by a unit voltage, per function of the field.
 
     In bending, the moment does work on the slopes at the ends of the electrodes.  If sections can camber, it
     also does work on the mean curvature across the width.
@@ -98,7 +98,7 @@ def coupling_of(
 
 
 def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of the circuit's flux, and the voltage, from coupling vectors theta of blocks."""
+    """Build the terms of a circuit with its flux as coordinate, and the voltage, from blocks' couplings."""
     root = np.sqrt(circuit.capacitance)
     terms = [
         Term("capacitance", BLOCK, BLOCK, 2, np.eye(1)),
@@ -112,7 +112,7 @@ def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[lis
 
 
 def charge_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of the circuit's charge, and the voltage, from coupling vectors theta of blocks."""
+    """Build the terms of a circuit with its charge as coordinate, and the voltage, from blocks' couplings."""
     C = circuit.capacitance
     terms = [
         Term("capacitance", BLOCK, BLOCK, 0, np.eye(1) / C),

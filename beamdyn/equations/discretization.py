@@ -55,7 +55,7 @@ class ArcQuadrature:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Weights of the integral from 0 to 1."""
+        """Gauss weights for integrals over x/L from 0 to 1."""
         return gauss_weights_on(self.cells.ends, self.cells.points)
 
     @cached_property
@@ -88,7 +88,7 @@ class ArcQuadrature:
         return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, points) that integrate from the root to k positions xi, at Gauss points."""
+        """Compute weights (k, points) of values at Gauss points for integrals from the root to k xi."""
         cell, t, own = self._find(xi)
         length, p = np.diff(self.cells.ends)[cell], self.cells.points
         matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
@@ -96,7 +96,7 @@ class ArcQuadrature:
         return matrix
 
     def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, points) that interpolate from the points of each cell to k positions xi."""
+        """Compute weights (k, points) of values at Gauss points, which interpolate to k positions xi."""
         _, t, own = self._find(xi)
         matrix = np.zeros((len(xi), len(self.xi)))
         values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
@@ -123,7 +123,7 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-_OF_TENSION = 8  # polynomial degree of most properties and of the products with them
+_OF_TENSION = 8  # smallest degree up to which polynomials are cached: that of most weights of integrals
 
 
 class Sampler:
@@ -148,7 +148,7 @@ class Sampler:
         return cls(cells.ends[:-1], cells.ends[1:], cells.points)
 
     def __call__(self, profile: Profile) -> np.ndarray:
-        """Evaluate a property at all Gauss points: shape (c points,)."""
+        """Evaluate a property at all Gauss points, cell by cell, in an array with one axis."""
         if profile not in self._known:
             segment, polynomials = self._place(profile.breakpoints, profile.degree)
             series = profile.series.T[segment]
@@ -219,7 +219,7 @@ class SampledSpace(FieldsOnly, ABC):
 def product_of(
     rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
 ) -> np.ndarray:
-    """Integrate a weight times derivatives of each pair of functions, by a rule that both spaces share."""
+    """Integrate a weight times derivatives (`orders`) of function pairs, by the Gauss rule of both spaces."""
     return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
 
 
@@ -233,9 +233,9 @@ class RootConditions(NamedTuple):
     derivatives : int
         Highest order of a derivative that must be square-integrable.
     stiffness : str
-        Stiffness of the sections against the highest derivative, by name; functions may be adapted to it.
+        Name of the section stiffness that resists the highest derivative; functions may be adapted to it.
     direction : int
-        Direction of the displacement across the beam, 0 or 1.
+        Direction of the displacement: 0 for that of bending at the root, 1 for the one perpendicular to it.
     """
 
     held: int
@@ -327,11 +327,11 @@ class Discretization(Protocol):
        (`FieldsOnly`).
     3. All physics is in the displacement fields (`beamdyn.equations.fields`); a function space only
        integrates and evaluates.
-    4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its distance
+    4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its difference
        from that of `coarser`; a tolerance is met by repeating `finer`.  Where functions of a space span those
-       of the coarser one, its `coarse` names them, and the coarser equations are a part of these.
+       of the coarser one, its `coarse` has their indices, and the coarser equations are a part of these.
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
-       `converges_regularly` says whether the estimate needs no further margin.
+       `converges_regularly` tells whether errors can be estimated without a further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
        in `beamdyn.modes.modal.discretization_choice`.
 
@@ -347,7 +347,7 @@ class Discretization(Protocol):
 
     @property
     def order(self) -> int | None:
-        """Order p of convergence of eigenvalues: their error is as size^-p; None if it is not a power."""
+        """Order p of convergence: errors of eigenvalues are proportional to size^-p; None if they are not."""
         ...
 
     @property

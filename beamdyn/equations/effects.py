@@ -1,4 +1,4 @@
-"""Physical effects beyond the plain (Euler-Bernoulli) beam: how to include each, and what holds without it.
+"""Physical effects beyond the Euler-Bernoulli beam: how to include each, and what is assumed without it.
 
 Messages name the two directions in which the beam bends at the root.
 """
@@ -34,7 +34,8 @@ class Effect:
     value : int
         Value of the field `switch` of `Physics` with which the effect is included.
     needs : tuple of str
-        Properties of the beam of which the effect needs at least one; derived properties come last.
+        Inputs of the beam of which the effect needs at least one; `poissons_ratio`, from which the property
+        is computed, comes last.
     bends : bool
         Whether the effect can be combined with large deflection in one plane.
     taken_out : str

@@ -49,8 +49,8 @@ class SteadyPencil:
         Squared first angular frequency of the beam with a clamped root [1/s2]; 0 if the root is clamped.
         K0 + shift M is positive definite.
     planes : int
-        Number of directions in which the beam bends, 1 or 2; with 2, the rounding of cancelling entries is
-        part of the error.
+        Number of directions in which the beam bends, 1 or 2; with 2, stated errors include rounding errors of
+        matrix entries that cancel.
     """
 
     M: np.ndarray
@@ -163,9 +163,9 @@ class Equations:
     # Deflection of the beam as a function of the coordinates ---------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
-        """Evaluate derivatives with respect to x/L of the deflection by unit coordinates, at k positions xi.
+        """Evaluate the `order`-th x/L derivative of the deflection by unit coordinates at k xi: (n, k).
 
-        Direction 0 is that of the bending angle, direction 1 is across.
+        Direction 0 is that of the bending angle, direction 1 is perpendicular to it.
         """
         check_direction(direction)
         xi = np.asarray(xi, dtype=float)
@@ -174,7 +174,7 @@ class Equations:
     def surface(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
         """Evaluate a strip's deflection in the direction of bending by unit coordinates: (coordinates, k, l).
 
-        The points are xi = x/L (k,) along and eta = 2 y/b (l,) across, with y in the direction across.
+        The points are xi = x/L (k,) along and eta = 2 y/b (l,) across the width b.
         A ValueError is raised if an eta lies outside the strip.
         """
         eta = real_array("eta", eta)
@@ -189,7 +189,7 @@ class Equations:
         return values
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate second derivatives of deflections by eta = 2 y/b, averaged over the width, at xi = x/L."""
+        """Evaluate the deflections' second derivative in eta = 2 y/b, averaged over the width b, at xi."""
         values = np.zeros((self.size, len(xi)))
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -206,7 +206,7 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner in the direction across, per unit of each coordinate."""
+        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates; plus twist for unknown width."""
         values = self.tip.copy()
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -250,7 +250,7 @@ class Equations:
 
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """Sums of the matrices multiplied by each quantity, for time derivatives of q of orders 0, 1, 2."""
+        """Matrix that each quantity multiplies, summed over terms, for q and its two time derivatives."""
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
         for term in self.terms:
             total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
@@ -259,7 +259,7 @@ class Equations:
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
-        """Sums of the load vectors multiplied by each quantity of the root's motion."""
+        """Load vector that each quantity of the root's motion multiplies, summed over the loads."""
         sums: dict[Quantity, np.ndarray] = {}
         for load in self.loads:
             total = sums.setdefault(load.quantity, np.zeros(self.size))

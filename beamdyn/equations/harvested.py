@@ -12,7 +12,7 @@ _FACES = 9  # number of positions along the layers at which strains are compared
 
 
 def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Voltage, Voltage]:
-    """Compute coefficients of the voltage across the load [V] and current through it [A], by coordinates.
+    """Compute coefficients of the voltage across the load [V] and current through it [A], per coordinate.
 
     Parameters
     ----------

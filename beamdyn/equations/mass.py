@@ -34,7 +34,7 @@ class PiecewisePolynomials:
     ends: tuple[float, ...]
 
     def counts(self, number: int) -> list[int]:
-        """Distribute a number of functions over the parts of the beam; shorter parts get fewer."""
+        """Return the number of functions on each part: `number` times the square root of its length x/L."""
         return [int(np.ceil(number * length**0.5)) for length in np.diff(self.ends)]
 
     def __call__(self, xi: np.ndarray, counts: Sequence[int], continuous: bool) -> np.ndarray:

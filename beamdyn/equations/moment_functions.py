@@ -51,7 +51,7 @@ from beamdyn.scene.sections import Tensor, inertia_about_shear_centre, section_t
 
 NODES = 12  # number of nodes on each cell, through which quotients of moment and stiffness are interpolated
 # Size of an interpolant's last coefficients, over its largest coefficient, at which a cell is resolved; the
-# error of eigenvalues is as its square.
+# error of eigenvalues is proportional to its square.
 _RESOLVED = 1e-7
 _ROUNDING = 10 * float(np.finfo(float).eps)  # relative rounding error of a sum of polynomials
 _PHASE = 7.0  # largest phase change [rad] of the highest polynomial within a cell
@@ -194,7 +194,7 @@ class MomentSpaces(FieldsOnly):
 
 
 def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> np.ndarray:
-    """Halve cells with ends until `are_coarse(left, right)` marks no cell."""
+    """Halve cells with given ends until `are_coarse(left, right)` marks none that can be halved."""
     fine, (left, right) = [], (ends[:-1], ends[1:])
     while left.size:
         coarse = are_coarse(left, right) & (right - left > _SHORTEST)
@@ -214,7 +214,10 @@ def _build_space(spaces: MomentSpaces, conditions: RootConditions) -> MomentSpac
 
 
 def stiffness_tensor(beam: Beam, name: str) -> Tensor:
-    """Return a stiffness of the sections by its components along e1, e2; a scalar one has one entry."""
+    """Return a section stiffness as a tensor along e1, e2: profiles by pair of indices, 0 for e1, 1 for e2.
+
+    A scalar stiffness has the entry (0, 0) only; for a stiffness that the beam lacks, the result is empty.
+    """
     if name in _SCALAR:
         stiffness = getattr(beam, name)
         return {} if stiffness is None else {(0, 0): stiffness}

@@ -21,7 +21,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.sections import weight_degree
 
-_MOST_ACROSS = 16  # number of functions across the width of a plate
+_MOST_ACROSS = 16  # largest number of functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest accepted number of functions on each segment
 _POINTS_OF_TURNS = 14  # number of additional Gauss points on each segment, for large deflections
 # Number of Gauss points on each cell of the basis "moments", whose cells are many and small.
@@ -104,7 +104,7 @@ class Ritz:
         return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
-        """Return a smaller basis, whose distance from this one exceeds the truncation error of this one."""
+        """Return a smaller basis, whose results differ from this one's by more than this one's error."""
         return Ritz(self.fewer, self.basis)
 
     @property
@@ -181,7 +181,7 @@ class RitzSpace(SampledSpace):
 
     @property
     def coarse(self) -> np.ndarray:
-        """Indices of the coarser basis' functions: the first of each segment, and the root rotation."""
+        """Indices of the coarser basis' functions: the first ones of each segment, and the root rotation."""
         return self._coarse
 
     @cached_property
@@ -296,8 +296,9 @@ def clamped_free_roots(count: int) -> np.ndarray:
 def _eigenfunctions(
     functions: int, ends: tuple[float, ...], derivatives: int, xi: np.ndarray, order: int
 ) -> np.ndarray:
-    """Evaluate derivatives of the uniform beam's mode shapes divided by b^2, or of a rod's divided by b.
+    """Evaluate derivatives of a uniform beam's mode shapes divided by b^2, or of a rod's divided by b.
 
+    b is the wave number of each mode, and `derivatives` is 2 for the beam and 1 for the rod.
     The formula neither overflows nor loses digits by cancellation at high modes.
     """
     quarter = order * np.pi / 2  # the order-th derivative of cos and sin shifts their phase

@@ -47,7 +47,7 @@ class RootMoment:
     velocity: Mapping[Quantity, np.ndarray]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Compute the moment [N m] at given coordinates and velocities; positive deflection if it is > 0."""
+        """Compute the moment [N m] at coordinates q and velocities v, positive for a positive deflection."""
         moment = np.zeros(root.unity.shape)
         for quantity, value in self.load.items():
             moment += getattr(root, quantity) * value
@@ -111,7 +111,7 @@ class StaticLoad:
     Parameters
     ----------
     accelerations : dict of str to complex
-        Quantities of the root's motion that load the beam in addition to the steady rotation.
+        Values of quantities of the root's motion that load the beam in addition to the steady rotation.
     force : tuple of (float, int), optional
         Position x/L and direction of a unit force.
     deflection : ndarray, shape (n,)

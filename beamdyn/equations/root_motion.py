@@ -31,9 +31,10 @@ class RootMotion:
     root_axial : ndarray
         Acceleration a_O1 of the root along the beam, minus gravity [m/s2].
     root_transverse : ndarray
-        Acceleration c a_O2 + s a_O3 of the root in the direction of bending, minus gravity [m/s2].
+        Acceleration c a_O2 + s a_O3 of the root in the direction of bending, minus gravity [m/s2]; c and s
+        are the cosine and sine of the bending angle.
     root_across : ndarray
-        Acceleration c a_O3 - s a_O2 in the direction across, minus gravity [m/s2].
+        Acceleration c a_O3 - s a_O2 of the root perpendicular to both, minus gravity [m/s2].
 
     Directions are the axes of the beam, which the precone inclines.
     """

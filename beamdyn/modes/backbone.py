@@ -37,8 +37,9 @@ from beamdyn.scene.validity import check_speeds, refuse_tip_load
 class Backbone(SceneResult, StatesModelError):
     """Frequency of a free vibration over its amplitude a, to first order: f = f0 (1 + k (a/L)^2).
 
-    `error` is the error of the coefficient k.  `model_error` and `left_out`, computed at their first use,
-    estimate how much neglected physical effects change the frequency f0.
+    `error` is the error of the coefficient k.  `left_out` contains the estimated relative change of the
+    frequency f0 by each neglected physical effect, `model_error` the magnitude of the sum of these changes;
+    both are computed at first use.
 
     Parameters
     ----------
@@ -53,7 +54,7 @@ class Backbone(SceneResult, StatesModelError):
     error : float
         Estimated absolute error of the nondimensional coefficient.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 
@@ -185,7 +186,8 @@ _STEADY = 1e-3  # relative difference of coefficients below which bases converge
 # Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.
 _ROUNDED = 1e-7
 _SAMPLES = 16  # number of samples per period, which separate harmonics up to the seventh
-_RESONANT = 1e-3  # condition of the dynamic stiffness below which the second harmonic is resonant with a mode
+# Relative size of the dynamic stiffness, below which the second harmonic is resonant with another mode.
+_RESONANT = 1e-3
 
 
 @dataclass(frozen=True)
@@ -219,7 +221,10 @@ class FreeVibration:
         return cls(state, speed, frequency, v * state.of.beam.stations.length / size)
 
     def coefficient(self, small: float) -> float:
-        """Compute the relative frequency change over the squared relative amplitude, in the limit of 0."""
+        """Compute the relative frequency change over the squared relative amplitude, for amplitude 0.
+
+        It is extrapolated from the relative amplitudes `small` and half of that.
+        """
         rough, fine = (self._shift(eps) for eps in (small, small / 2))
         return (4 * fine - rough) / (3 * self.omega)
 
@@ -246,7 +251,7 @@ class FreeVibration:
         return float(np.real(v.conj() @ _harmonic(odd, 1)) / np.real(v.conj() @ slope @ v))
 
     def _forces(self, harmonics: dict[int, np.ndarray]) -> np.ndarray:
-        """Compute the residual (_SAMPLES, n) over one period, for a motion with given harmonics."""
+        """Compute the residual of the equations over one period (_SAMPLES, n), for given harmonics of q."""
         phase = 2 * np.pi * np.arange(_SAMPLES) / _SAMPLES
         waves = {h: np.exp(1j * h * phase)[:, None] * x for h, x in harmonics.items()}
         q, rate, acceleration = (

@@ -37,7 +37,7 @@ _NARROW = 1e-11  # relative width of bounds of squared frequencies below which t
 _RESOLVED = 1e-8
 # Numbers of functions, on all segments together, tried for a bound of the critical speed.
 _PROOF_SIZES = (24, 48, 96)
-_CLOSE = 1 - 1e-6  # fraction of the squared Ritz value above which a bound is close enough
+_CLOSE = 1 - 1e-6  # part of the squared critical speed by Ritz's method from which a bound is close enough
 # Fractions of the squared critical speed by Ritz's method that are tried as lower bounds.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
 _HOW = "upper: Rayleigh-Ritz; lower: Rayleigh-Ritz minus a bound of the coupling to all other functions"
@@ -224,8 +224,8 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 def bound_critical_speed(scene: Scene) -> float:
     """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
 
-    The theorem, with z = 0 and k = 1, proves that the stiffness is positive definite at this speed and thus
-    at every lower one.
+    The theorem in `beamdyn.modes.residual_bound`, with z = 0 and k = 1, proves that the stiffness is positive
+    definite at this speed and thus at every lower one.
     """
     scaled, time = _nondimensional(scene)
     if (flexibility := bound_flexibility(scaled.beam.bending_stiffness)) is None:

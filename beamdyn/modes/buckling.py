@@ -99,7 +99,7 @@ _ROUNDING = 64 * float(np.finfo(float).eps)
 _SHORTEST = 1e-12  # distance x/L of a point mass from the tip below which it counts as a tip mass
 # Numbers of functions, on all segments together, of two bases whose results must agree.
 _STRING_SIZES = 60, 100
-# Smallest distance of an eigenvalue from the limit that decides, over the difference of the two bases.
+# Smallest distance of the string's eigenvalue from 1 that decides, over the difference of the two bases.
 _RESOLVED = 10
 _CELLS = 2000  # number of cells of the midpoint rule on all segments together
 _MARGIN = 1.01  # factor that allows for the error of the midpoint rule

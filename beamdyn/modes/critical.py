@@ -66,8 +66,9 @@ _FUNCTIONS = 5
 class CriticalPoint(SceneResult, StatesModelError):
     """Critical speed, at which the stiffness of the rotating beam is singular, with its error.
 
-    `error` is the numerical error.  `model_error` and `left_out`, computed at their first use, estimate how
-    much neglected physical effects change the critical speed.
+    `error` is the numerical error.  `left_out` contains the estimated relative change of the critical speed
+    by each neglected physical effect, `model_error` the magnitude of the sum of these changes; both are
+    computed at first use.
 
     Parameters
     ----------
@@ -84,7 +85,7 @@ class CriticalPoint(SceneResult, StatesModelError):
     reason : str
         Why there is a critical speed or none, or why this is not known.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
     of_bent_beam : bool

@@ -20,7 +20,7 @@ from beamdyn.scene.scene import Scene
 _SIZED_FOR = 5
 # x/L above which deflections are so large that rounding errors of short elements become visible.
 _NEAR_TIP = 0.5
-# Rounding error of an element, times the cube of the shortest element's relative length.
+# Relative rounding error of a critical speed, times the cube of the shortest element's length x/L.
 _OF_SHORTEST = 4 * float(np.finfo(float).eps)
 # Relative rounding error of a bent beam, whose stiffness is a small sum of large terms.
 _ROUNDING_OF_BENT = 1e-10
@@ -31,7 +31,7 @@ _TO_HALF = 4  # number of steps from a basis to a basis of about half the size
 
 @dataclass(frozen=True)
 class FoundSpeed:
-    """Critical speed of a model [rad/s], relative error of this speed, and the rounding part of the error."""
+    """Critical speed of a model [rad/s]; its relative error, found with `coarse`, and the rounding part."""
 
     model: Model
     coarse: Model
@@ -71,9 +71,9 @@ def search_critical_speed(models: Iterator[Model], target: float) -> FoundSpeed:
 def compare_critical_speeds(model: Model) -> FoundSpeed:
     """Compute the critical speed of a model, and its error from a model of about half the size.
 
-    With slow convergence, the distance from a basis with only a few functions less would be too small.  If
-    the error is proportional to size^-p with p >= 1, it is at most the distance from the basis of half the
-    size.
+    With slow convergence, the difference from the result of a basis with only a few functions less would be
+    too small.  If the error is proportional to size^-p with p >= 1, it is at most the difference from the
+    result of the basis of half the size.
     """
     discretization, solver = model.discretization, model.solver
     order, noise = discretization.order, discretization.rounding
@@ -131,7 +131,7 @@ def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
 
 
 def _margin(model: Model) -> float:
-    """Choose the ratio of error to distance between two models; 1 for meshes with half the elements."""
+    """Choose the ratio of the error to the difference between two models; 1 for meshes, which are halved."""
     if model.discretization.order is not None:
         return 1.0
     return (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor

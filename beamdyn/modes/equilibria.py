@@ -41,7 +41,7 @@ from beamdyn.scene.validity import check_speeds
 _FINE = 0.05  # arc length of a step, small enough for smooth curves in a plot
 _MOST_POINTS = 2000  # largest number of points of a branch
 _STEEPEST = 2 * np.pi  # largest slope angle [rad] up to which a branch is continued
-_UNSTABLE = "the straight beam, of which effects are judged, is unstable"
+_UNSTABLE = "the straight beam, for which effects are estimated, is unstable"
 _JUST_BELOW = 1 - 1e-9  # ratio of the last listed speed of the stable straight beam to its critical speed
 _ROUNDING = 1e-13  # rounding error of a position, relative to the length
 # Relative rounding error of loads and stiffness, which deflects the beam much more near buckling.
@@ -52,15 +52,17 @@ _OF_LOADS = 16 * float(np.finfo(float).eps)
 class Equilibrium(SceneResult, StatesModelError):
     """Equilibrium of a beam at a steady speed, with any deflection.
 
-    `error` is the numerical error.  `model_error` and `left_out`, computed at their first use, estimate how
-    much neglected physical effects change the tip deflection, for small deflections.
+    `error` is the numerical error.  `left_out` contains the estimated relative change of the tip deflection
+    by each neglected physical effect, for small deflections, `model_error` the magnitude of the sum of these
+    changes; both are computed at first use.
 
     Parameters
     ----------
     speed : float
         Speed [rad/s].
     branch : str
-        "straight": continued from rest as the speed rises; "bent": another equilibrium, next to that branch.
+        "straight": continued from rest as the speed rises, also if rotation bends the beam; "bent": another
+        equilibrium at this speed, bent to the opposite side.
     tip : ndarray, shape (3,)
         Position of the tip from the root along b1, b2, b3 [m].
     tip_angle : float
@@ -73,7 +75,7 @@ class Equilibrium(SceneResult, StatesModelError):
     growth_rate : float
         Largest growth rate of a small motion [1/s]; 0 if it is stable.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 
@@ -149,8 +151,9 @@ def equilibrium(
     speed : float
         Speed [rad/s].
     branch : {"straight", "bent"}, optional
-        "straight": the equilibrium continued from rest as the speed rises; "bent": the stable one next to it,
-        above a critical speed or a turning point.  The default is the branch of `scene.physics`.
+        "straight": the equilibrium continued from rest as the speed rises; "bent": the stable one that exists
+        above a critical speed or a turning point, bent to the opposite side.  The default is the branch of
+        `scene.physics`.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
@@ -191,7 +194,7 @@ def equilibrium(
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
-    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable equilibrium next to it'
+    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable one on the opposite side'
     said = "the equilibrium is unstable ", at, f": a small motion grows at {growth:.3g} 1/s; {remedy}"
     rate = {"quantity": "growth rate [1/s]", "value": growth, "limit": 0.0}
     unstable = Statement(*said, kind=GROWING, remedy=remedy, **rate)
@@ -230,13 +233,13 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
 
 
 def _directions(mount: Mount) -> np.ndarray:
-    """Compute components (2, 2) along b2, b3 of the direction of bending, and of the direction across."""
+    """Compute components along b2, b3 of the direction of bending and of the perpendicular one (rows)."""
     c, s = aligned_cos_sin(mount.bending_angle)
     return np.array([[c, s], [-s, c]])
 
 
 def _in_space(positions: np.ndarray, mount: Mount) -> np.ndarray:
-    """Transform positions (..., 3) along b1, the direction of bending and across, to b1, b2 and b3."""
+    """Transform positions (..., 3) along b1 and both directions of bending to positions along b1, b2, b3."""
     return np.concatenate([positions[..., :1], positions[..., 1:] @ _directions(mount)], axis=-1)
 
 
@@ -250,7 +253,7 @@ class EquilibriumBranch:
     Parameters
     ----------
     name : str
-        "straight" or "bent".
+        "straight" or "bent", as the branches of `equilibrium`.
     speeds : ndarray, shape (k,)
         Speeds [rad/s].
     tip : ndarray, shape (k, 3)
@@ -289,7 +292,7 @@ class EquilibriumBranches(SceneResult):
     critical_speed : float
         Speed at which the straight beam buckles [rad/s]; inf if rotation bends it at every speed.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 

@@ -22,7 +22,7 @@ _HALVINGS = 40  # largest number of halvings of a segment on which no polynomial
 
 
 def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
-    """Compute upper bounds (4,) of the traces of tension, mass and tip-slope forms, relative to the energy.
+    """Compute upper bounds (4,) of the traces of two tensions, mass and tip slope, relative to the energy.
 
     The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
     sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:

@@ -39,9 +39,10 @@ _EXTRA_MODES = 2  # number of additional higher modes, with which the requested 
 class Locus(TellsKinds, SceneResult, StatesModelError):
     """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
 
-    `error` is the numerical error.  `model_error` (k, modes) and `left_out`, computed at their first use,
-    estimate the changes by neglected physical effects at the `left_out_speeds` (k,); `left_out_at` does so at
-    other speeds.  `kind` (S, modes) is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes
+    `error` is the numerical error.  `left_out` contains the estimated relative change of each frequency by
+    each neglected physical effect at the `left_out_speeds` (k,), `model_error` (k, modes) the magnitude of
+    the sum of these changes; both are computed at first use, and `left_out_at` computes the changes at other
+    speeds.  `kind` (S, modes) is "bending", "torsion" or "camber" as in `Modes`, at each speed: modes
     exchange their kinds at a veering.
 
     Parameters
@@ -67,7 +68,7 @@ class Locus(TellsKinds, SceneResult, StatesModelError):
     axial_strain : ndarray, shape (S,)
         Largest static axial strain; nan if it is unknown.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 

@@ -51,8 +51,9 @@ Mesh: TypeAlias = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 class Modes(TellsKinds, SceneResult, StatesModelError):
     """Natural modes at one speed, the lowest first.
 
-    `error` is the numerical error.  `model_error` (m,) and `left_out`, computed at their first use, estimate
-    the changes by neglected physical effects.  `kind` (m,) names the kind of motion with most of a mode's
+    `error` is the numerical error.  `left_out` contains the estimated relative change of each frequency by
+    each neglected physical effect, `model_error` (m,) the magnitude of the sum of these changes; both are
+    computed at first use.  `kind` (m,) names the kind of motion with most of a mode's
     kinetic energy: "bending", "torsion" or "camber".
 
     Parameters
@@ -84,7 +85,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
     axial_strain : float
         Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 
@@ -133,7 +134,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
     def shape(self, x: np.ndarray | Sequence[float], direction: int = 0) -> np.ndarray:
         """Compute the mass-normalised modes' deflection at x [m] along the beam: shape (m, len(x)).
 
-        Direction 0 is the bending direction at the root, direction 1 is across.
+        Direction 0 is the bending direction at the root, direction 1 is perpendicular to it.
         """
         equations = self.model.equations_at(self.speed)
         return self.vectors.T @ equations.deflection(self._over_length(x), direction=direction)
@@ -142,8 +143,8 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
         """Compute mass-normalised modes' deflection over a strip: shape (m, len(x), len(eta)).
 
         The deflection is in the direction of bending, at positions x [m] along the beam and eta = 2 y/b
-        across its width b, from -1 to 1, where y points in the direction across.  The mean over eta is
-        `shape`; where neither torsion nor camber is modelled, the deflection does not depend on eta.
+        across its width b, from -1 to 1, where y points in the second direction of bending.  The mean over
+        eta is `shape`; where neither torsion nor camber is modelled, the deflection does not depend on eta.
         """
         equations = self.model.equations_at(self.speed)
         return np.tensordot(self.vectors.T, equations.surface(self._over_length(x), np.asarray(eta)), 1)
@@ -165,7 +166,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
         shapes : ndarray, shape (modes, n, positions)
             Deflections in the direction of bending, real numbers.
         across : ndarray, shape (modes, n)
-            Deflections in the direction across, which is -y.
+            Deflections in the second direction of bending, towards -y.
 
         None if the sections keep their shape, or if their width is not known.
         """
@@ -328,7 +329,7 @@ def natural_modes(
 def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | None) -> np.ndarray:
     """Scale modes (columns) by signs or phases that make the larger tip deflection real and positive.
 
-    If sections twist or camber, the deflection of the tip's corner in the direction across is used.
+    For modes of torsion or camber, the deflection of the tip's corner at eta = 2 y/width = 1 is used.
     """
     tips = equations.tips @ vectors
     larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]

@@ -23,14 +23,13 @@ def separate_planes(scene: Scene, spinning: bool = True) -> tuple[Scene, ...]:
     scene : Scene
         The scene.
     spinning : bool
-        Whether the carrier rotates; if not, the bending angle does not couple the planes of a straight
-        section.
+        Whether the carrier rotates; if not, the bending angle and the precone do not couple the planes.
 
     Returns
     -------
     tuple of Scene
         The scene itself, if its beam is slender and modelled in one plane.  For two uncoupled planes of a
-        slender beam, a scene for the direction of bending at the root, and one for the direction across;
+        slender beam, a scene for the direction of bending at the root, and one for the perpendicular one;
         otherwise empty.
     """
     if scene.is_slender_beam_in_one_plane:
@@ -93,7 +92,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
 
 
 def _quarter_turns(beam: Beam) -> int | None:
-    """Return the number of 90 degree turns by which all sections are rotated; None if it is not whole."""
+    """Return the number of 90 degree turns of all sections alike; None if it varies or is not whole."""
     if beam.twist is None:
         return 0
     if any(any(row[1:]) for row in beam.twist.coefficients):

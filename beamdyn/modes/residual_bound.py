@@ -259,7 +259,7 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def tails(self) -> np.ndarray:
-        """Upper bounds (4,) of the forms P_j over the energy, for functions outside the Ritz basis."""
+        """Upper bounds (4,) of the forms P_j (see module) over the energy, outside the Ritz basis."""
         head = [np.trace(np.linalg.solve(self.stiffness, form)) for form in self.forms]
         return np.maximum(self._traces - head, 0) + self.unit * self._traces
 

@@ -139,7 +139,7 @@ def basis(beam: Beam, functions: int) -> Ritz:
 
 
 def _bends_by_moments(beam: Beam) -> bool:
-    """Return whether moments suit a beam better than polynomials: many segments, or very small stiffness."""
+    """Return whether moments suit a beam better than polynomials: many segments, or a strong taper."""
     if len(beam.breakpoints) - 1 > _FEW_SEGMENTS:
         return True
     stiffness = beam.bending_stiffness.at_points(_SAMPLES)
@@ -235,8 +235,8 @@ class PlaneRitzPart(RitzPart):
     def residuals(self, compliance: np.ndarray) -> np.ndarray:
         """Integrate products of unbalanced moments, with the compliance of each cell as weight.
 
-        The moment for the load j of the function i is F_ji - EI p, where p is the curvature of the Ritz
-        response to the load, by functions that are orthonormal in energy.
+        The unbalanced moment for the load j of the function i is the moment by this load minus EI p, where p
+        is the curvature of the Ritz response to the load, by functions that are orthonormal in energy.
         """
         own = self.at(self.beam.bending_stiffness) * self.bending
         left = (self.moments - self.forms @ own).reshape(-1, own.shape[1])
@@ -353,7 +353,7 @@ class CoupledRitzPart(RitzPart):
 
     @property
     def _all_moments(self) -> np.ndarray:
-        """Bending moments along e1, e2 at the nodes: polynomials, and those by inertia and tension.
+        """Bending moments along the fixed e1, e2 at the nodes: polynomials, and those by inertia and tension.
 
         The latter act in a beam that vibrates in the shapes caused by the first polynomials.
         """
@@ -370,7 +370,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def bending(self) -> np.ndarray:
-        """Curvatures of the functions along e1, e2 at the Gauss points, (functions, 2, points)."""
+        """Curvatures of the functions along the fixed e1, e2 at Gauss points, (functions, 2, points)."""
         return self._turned(self.curvature, self.quadrature, 1)
 
     # Forms and loads ------------------------------------------------------------------------------
@@ -381,7 +381,7 @@ class CoupledRitzPart(RitzPart):
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """Build the forms of tension by speed, by root acceleration, mass, directed mass."""
+        """Build the forms of tension by speed, by root acceleration, mass, mass moving in a `direction`."""
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T
@@ -391,7 +391,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def twisting(self) -> np.ndarray:
-        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w') dx."""
+        """Matrix of the form of twisting by inertia, int (v' w'' - v'' w') dx, v along e1 and w along e2."""
         across = np.stack([-self.bending[:, 1], self.bending[:, 0]], axis=1)
         form = -np.tensordot(self.slope[..., :-1] * self.quadrature.weights, across, ((1, 2), (1, 2)))
         return (form + form.T) / 2
@@ -424,7 +424,7 @@ class CoupledRitzPart(RitzPart):
         return self._turned(fixed, rule, -1) - np.tensordot(answer, own, 1)
 
     def residuals(self, unbalanced: np.ndarray) -> np.ndarray:
-        """Integrate products of moments (moments, 2, points), weighted by upper bounds of the compliance."""
+        """Integrate products of moments (n, 2, points) times upper bounds of the compliance: (n, n)."""
         return self.gram(unbalanced, np.repeat(self.compliance, self.quadrature.cells.points, axis=1))
 
 
@@ -434,7 +434,7 @@ def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
     For an angle of at most `turn` from the middle of its range, interpolation in Chebyshev points has an
     error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that rotates curvatures is then
     R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E
-    grows at most by the root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
+    grows at most by the square root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
     """
     for degree in range(_MOST_DEGREE):
         error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))

@@ -33,26 +33,26 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class SettingAngleLimits(SceneResult, JudgedByRepeating):
-    """Setting angles between which the first frequency rises and then falls with speed (unpacks as two).
+    """Setting angles between which the first frequency rises and then falls with speed.
 
     Below `first` the frequency falls from speed 0 on; between both angles it rises and then falls before the
-    top speed; above `second` it rises up to the top speed.
+    top speed; above `second` it rises up to the top speed.  ``first, second = limits`` unpacks both.
 
-    `model_error` (2,) and `left_out`, computed at their first use, estimate how much neglected physical
-    effects change the two angles.
+    `left_out` contains the estimated relative change of the two angles by each neglected physical effect,
+    `model_error` (2,) the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
     first, second : float
-        The limits [rad]; nan if there is none.
+        The two setting angles [rad]; nan if there is no such angle.
     error : float
-        Estimated error of both angles [rad].
+        Estimated absolute error of both angles [rad].
     top_speed : float
         The top speed [rad/s].
     static_deflection : float
         Static tip deflection at the second limit and the top speed, as a fraction of the length.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         Program version, discretization and computing time.
 
@@ -183,7 +183,7 @@ def setting_angle_limits(
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Compute both limits [rad] from the matrix A - cos(setting angle) B that multiplies the squared speed.
+    """Compute both setting angles [rad] from the matrix A - cos(setting angle) B of the squared speed.
 
     B is the radius of the root times the stiffness due to the tension by a unit root acceleration.
     """
@@ -197,7 +197,7 @@ def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
         return first, _arccos(float(eigh(A, B, eigvals_only=True)[0]), 1.0) if B.any() else np.nan
 
     def slope(phi: float) -> float:
-        """Compute the slope of the first squared frequency over the squared speed, at the top speed."""
+        """Differentiate the first squared frequency with respect to squared speed, at the top speed."""
         K2 = A - np.cos(phi) * B
         v = Solver(replace(pencil, K2=K2)).solve(np.array([top_speed]), 1).vector[0, :, 0]
         return float(v @ K2 @ v)

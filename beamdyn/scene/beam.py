@@ -20,7 +20,7 @@ from beamdyn.scene.profile import Profile, Property, as_profile, check_positive,
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.section_matrices import SectionMatrices
 
-_STRAIGHT = 1e-9  # twist [rad] below which a beam counts as untwisted: its effects are below 1e-18
+_STRAIGHT = 1e-9  # twist, sweep or prebend [rad] up to which a beam counts as untwisted or straight
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ class Beam(FieldsOnly, OneLine):
 
     Build it by `rectangular`, `from_stiffness` or `from_matrices`.
 
-    `Physics` says which of the properties a model uses.
+    `Physics` determines which of the properties a model uses.
 
     Parameters
     ----------
@@ -46,7 +46,8 @@ class Beam(FieldsOnly, OneLine):
     tip : TipMass, optional
         Rigid body at the tip.
     second_bending_stiffness : Profile, optional
-        Bending stiffness in the direction of the section across [N m2]; it may be the smaller of the two.
+        Stiffness for bending in the second direction of the section, perpendicular to the first ("across")
+        [N m2]; it may be the smaller of the two.
     twist : Profile, optional
         Angle by which the section is turned about the beam [rad] over x/L, added to the bending angle.
     shear_stiffness, second_shear_stiffness : Profile, optional
@@ -60,20 +61,22 @@ class Beam(FieldsOnly, OneLine):
         Springs that hold points of the beam to the carrier; those at one place add up.
     section : rectangle, optional
         The rectangular section that the properties were derived from (`rectangular`); else None.
-        Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given there.
+        Its `width`, `thickness`, `youngs_modulus`, `density` and `poissons_ratio` are as given to
+        `rectangular`.
     torsion_stiffness, warping_stiffness : Profile, optional
         Stiffness against torsion G J [N m2], and against warping E Cw [N m4], over x/L; those of a
         rectangular section follow from its sides.
     sweep, prebend : Profile, optional
         Angles by which the axis of the unloaded beam leaves its direction at the root [rad] over x/L, x along
-        the axis: it points along (cos a cos b, cos a sin b, sin a), in the axes along the beam at its root,
-        in the direction of bending and across, with the sweep a and the prebend b.
+        the axis: its direction is (cos a cos b, cos a sin b, sin a) with the sweep a and the prebend b, by
+        components along the beam at its root, in the direction of bending, and perpendicular to both.
     mass_offset, tension_offset : Profile, optional
         Distance of the sections' centre of mass, and of their centre of tension, from their shear centre in
-        the direction across [m], of either sign, over x/L.  The shear centres are the axis of the beam.
+        the second direction of the section [m], of either sign, over x/L.  The shear centres lie on the axis
+        of the beam.
     matrices : SectionMatrices, optional
-        The 6 x 6 matrices of stiffness and mass that the properties follow from, by `from_matrices`; None
-        where they do not.  The properties are then entries of their diagonals.
+        The 6 x 6 matrices of stiffness and mass from which `from_matrices` took the properties; None for
+        other beams.
     electrodes : electrodes, optional
         Electrodes of piezoelectric layers, which `Harvester.on` puts on a beam with their mass and stiffness.
 
@@ -148,7 +151,7 @@ class Beam(FieldsOnly, OneLine):
 
     @property
     def strip(self) -> Rectangle | None:
-        """The rectangular section, with its layers if any, for deflections that vary across the width."""
+        """The rectangular section, with piezoelectric layers if any, for plate models; None without one."""
         return self.section if self.electrodes is None else self.electrodes.laminate
 
     def with_section(self, section: Rectangle) -> Beam:
@@ -192,7 +195,7 @@ class Beam(FieldsOnly, OneLine):
             Rigid body at the tip.
         breakpoints : sequence of float
             Fractions x/L where the section jumps or has a kink.  A callable is sampled at intervals of
-            2.5e-5: what is narrower is seen only between breakpoints, or in a Table.
+            2.5e-5 in x/L: narrower features need breakpoints at both ends, or a Table.
         twist : float, Polynomial, Table or callable, optional
             Angle by which the section is turned [rad], added to the bending angle of the mount.
         poissons_ratio : float, optional
@@ -205,7 +208,7 @@ class Beam(FieldsOnly, OneLine):
             Springs that hold points of the beam to the carrier; those at one place add up.
         sweep, prebend : float, Polynomial, Table or callable, optional
             Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
-            length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
+            length: the prebend in the plane of bending, the sweep out of it.  A jump is a kink of the axis.
 
         Returns
         -------
@@ -275,13 +278,14 @@ class Beam(FieldsOnly, OneLine):
             Rigid body at the tip.
         breakpoints : sequence of float
             Fractions x/L where a property jumps or has a kink.  A callable is sampled at intervals of
-            2.5e-5: what is narrower is seen only between breakpoints, or in a Table.
+            2.5e-5 in x/L: narrower features need breakpoints at both ends, or a Table.
         second_bending_stiffness : float, Polynomial, Table or callable, optional
-            E I for bending in the direction of the section across [N m2]; without it there is one plane.
+            E I for bending in the second direction of the section, perpendicular to the first [N m2]; without
+            it the beam bends in one plane only.
         twist : float, Polynomial, Table or callable, optional
             Angle by which the section is turned [rad], added to the bending angle of the mount.
         shear_stiffness, second_shear_stiffness : float, Polynomial, Table or callable, optional
-            kappa G A [N] for bending in either direction; without the second it is as the first.
+            kappa G A [N] for bending in either direction; the second is equal to the first if not given.
         rotary_inertia, second_rotary_inertia : float, Polynomial, Table or callable, optional
             rho I [kg m], rotary inertia of the section per length for bending in either direction, about the
             centre of mass.
@@ -292,14 +296,14 @@ class Beam(FieldsOnly, OneLine):
         torsion_stiffness : float, Polynomial, Table or callable, optional
             G J [N m2]; torsion also needs both rotary inertias.
         warping_stiffness : float, Polynomial, Table or callable, optional
-            E Cw [N m4], against warping of the section, which the root then holds.
+            Stiffness E Cw [N m4] against warping of the section, which a clamped root then prevents.
         sweep, prebend : float, Polynomial, Table or callable, optional
             Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
-            length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
+            length: the prebend in the plane of bending, the sweep out of it.  A jump is a kink of the axis.
         mass_offset, tension_offset : float, Polynomial, Table or callable, optional
-            Distance of the centre of mass, and of that of tension, from the shear centre in the direction
-            across [m], of either sign; 0 without it.  They matter for torsion, whose stiffness they need.
-            Bending stiffnesses are about the centre of tension.
+            Distance of the centre of mass, and of that of tension, from the shear centre in the second
+            direction of the section [m], of either sign; 0 if not given.  They couple bending and torsion,
+            and need `torsion_stiffness`.  Bending stiffnesses are about the centre of tension.
 
         Returns
         -------
@@ -360,7 +364,7 @@ class Beam(FieldsOnly, OneLine):
             Springs that hold points of the beam to the carrier; those at one place add up.
         sweep, prebend : float, Polynomial, Table or callable, optional
             Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
-            length: towards the direction across, and in the plane of bending.  A jump is a kink of the axis.
+            length: the prebend in the plane of bending, the sweep out of it.  A jump is a kink of the axis.
 
         Returns
         -------
@@ -402,7 +406,7 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
-        """Fractions x/L where a property may jump or have a kink, or a mass is, with the ends 0 and 1."""
+        """Fractions x/L of jumps and kinks of properties, of point masses and springs, and of both ends."""
         names = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
         profiles = (getattr(self, name) for name in names)
         ends = {b for p in profiles if p is not None for b in p.breakpoints}
@@ -416,7 +420,7 @@ class Beam(FieldsOnly, OneLine):
         return np.minimum(position / self.length, 1.0), mass
 
     def springs(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return positions x/L and stiffnesses [N/m] of the point springs in direction 0 or 1."""
+        """Return x/L and stiffnesses [N/m] of springs in the direction of bending (0) or across it (1)."""
         if not self.point_springs:
             return np.empty(0), np.empty(0)
         found = [s for s in self.point_springs if s.stiffness and direction_of(s.direction) == direction]
@@ -430,7 +434,7 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def is_twisted(self) -> bool:
-        """Whether a twist is given that turns any section by more than rounding, 1e-9 rad."""
+        """Whether a twist is given that may turn a section by more than 1e-9 rad."""
         return self.twist is not None and bool(np.abs(self.twist.series).sum(axis=0).max() > _STRAIGHT)
 
     @cached_property
@@ -451,7 +455,7 @@ class Beam(FieldsOnly, OneLine):
 
     @property
     def tip_tension_offset(self) -> float:
-        """Distance of the centre of tension at the tip from the shear centre, in the direction across [m]."""
+        """Distance from shear to tension centre at the tip, in the section's second direction [m]."""
         return 0.0 if self.tension_offset is None else float(self.tension_offset.end_values()[1][-1])
 
 

@@ -19,9 +19,10 @@ moment, and q the charge per length:
  unimorph   e b (z - z_n)          eps b/t + (e b)^2/(E A)
 =========  =====================  ==========================
 
-z = (h + t)/2 is the distance of the middle of a layer from that of the beam, z_n that of the neutral axis, to
-which one layer on one side moves it.  A voltage on one layer also stretches the beam, by e b v/(E A), which
-adds to its capacitance: the axial force is that of the loads alone.  Series and parallel as in Erturk and
+b is the width, h the thickness of the beam, t that of a layer; z = (h + t)/2 is the distance of the middle of
+a layer from that of the beam, z_n that of the neutral axis, to which one layer on one side moves it.  A
+voltage on one layer also stretches the beam, by e b v/(E A), as no axial force resists, which adds to the
+capacitance.  Series and parallel as in Erturk and
 Inman (2009), Smart Materials and Structures 18, 025009; unimorph: own derivation, docs/harvester.md.
 """
 
@@ -44,7 +45,7 @@ from beamdyn.scene.rectangle import Coupled, Laminate, Material, Rectangle, comp
 Connection = Literal["series", "parallel", "unimorph"]
 _STRAINED, _STRESSED = ("e31", "c11e", "eps33s"), ("d31", "s11e", "eps33t")
 _SETS = _STRAINED, _STRESSED
-_EVEN = 1e-9  # relative change of width or thickness under the layers below which it is rounding
+_EVEN = 1e-9  # relative change of width or thickness under the layers below which they count as constant
 _SHORT: Any = {"least": 0, "infinite": "open circuit", "remedy": "0 is a short circuit, inf an open one"}
 
 
@@ -61,13 +62,13 @@ class Harvester(FieldsOnly):
     density : float
         Density of the layers [kg/m3].
     connection : {"series", "parallel", "unimorph"}
-        A layer on either side, connected in series or in parallel, or one layer.
+        Layers on both sides, connected in series or in parallel, or one layer on one side ("unimorph").
     e31, c11e, eps33s : float, optional
         Piezoelectric stress constant [C/m2], of either sign, modulus at constant field [Pa] and permittivity
         at constant strain [F/m], of a layer that is free across and through its thickness: the reduced
         constants of a beam, d31/s11E, 1/s11E and eps33T - d31^2/s11E.  Entries of a data sheet's stiffness
         matrix, for a layer held in both, differ: of PZT-5A c11E is twice as large, and e31 half as large.
-        A wide strip is held across near its clamp, which follows from `poissons_ratio`.
+        A wide strip is held across near its clamp, which is modelled if `poissons_ratio` is given.
     d31, s11e, eps33t : float, optional
         In their place the strain constant [m/V], compliance at constant field [1/Pa] and permittivity at
         constant stress [F/m], as data sheets have them.
@@ -78,7 +79,7 @@ class Harvester(FieldsOnly):
     strain_limit : float
         Largest strain that a layer bears; inf where none is known.
     poissons_ratio : float, optional
-        -s12E/s11E, for camber, which stiffens the section and couples more where a clamp hinders it.
+        -s12E/s11E, for camber, which a clamp hinders: that increases stiffness and coupling near it.
 
     Raises
     ------
@@ -102,7 +103,7 @@ class Harvester(FieldsOnly):
     thickness: Annotated[float, Described("m", "t", "thickness of a layer", above=0)]
     density: Annotated[float, Described("kg/m3", "rho_p", "density of the layers", above=0)]
     connection: Annotated[
-        Connection, Described("", "", "a layer on either side in series or parallel, or one: unimorph")
+        Connection, Described("", "", "layers on both sides in series or parallel, or on one: unimorph")
     ] = "series"
     e31: Annotated[float | None, Described("C/m2", "e31", "piezoelectric stress constant")] = None
     c11e: Annotated[float | None, Described("Pa", "c11E", "modulus at constant field", above=0)] = None
@@ -160,14 +161,14 @@ class Harvester(FieldsOnly):
 
     @property
     def material(self) -> Material:
-        """Stiffness, coupling and permittivity of the layers, for strain along the beam and one field."""
+        """Stiffness, coupling, permittivity of the layers: strain along the beam, field through the layer."""
         if self.e31 is not None and self.c11e is not None and self.eps33s is not None:
             return Material(self.c11e, self.e31, self.eps33s)
         assert self.d31 is not None and self.s11e is not None and self.eps33t is not None, "one set is given"
         return Material(1 / self.s11e, self.d31 / self.s11e, self.eps33t - self.d31**2 / self.s11e)
 
     def on(self, beam: Any) -> Any:
-        """Put the layers on a beam: a `Beam` with their mass, stiffness (short-circuited) and electrodes.
+        """Return a copy of a beam with the layers' mass, stiffness (short-circuited) and electrodes added.
 
         Raises
         ------
@@ -202,8 +203,9 @@ class Harvester(FieldsOnly):
     ) -> tuple[Laminate, Coupled | None]:
         """Return the strip with layers as a plate, and the electrodes' constants of sections held flat.
 
-        If Poisson's ratio of the strip or of the layers is not known, the plate has none, and None stands for
-        the electrodes.  The stiffness per width is that of the beam [N m].
+        If Poisson's ratio of the strip or of the layers is not known, the plate has none, and None replaces
+        the constants.  `span` is that of the layers in x/L, `sides` are the width and thickness of the bare
+        strip [m], `stiffness` is the bending stiffness per width of the beam with layers [N m].
         """
         (b, h), t, nu = sides, self.thickness, self.poissons_ratio
         count = 1 if self.connection == "unimorph" else 2
@@ -272,7 +274,8 @@ class Electrodes(FieldsOnly):
     laminate : Laminate
         The strip with the layers, whose deflections may vary across.
     flat : Coupled or None
-        Moment and capacitance of a section that is held flat; None where a Poisson's ratio is not known.
+        Coupling and capacitance per length of sections that cannot camber; None where a Poisson's ratio is
+        not known.
     across : bool
         Whether the deflections of the scene vary across the width: then the constants of `flat` hold, and
         camber is a deflection.
@@ -290,7 +293,7 @@ class Electrodes(FieldsOnly):
 
     @property
     def moment(self) -> float:
-        """Bending moment per voltage [N m/V], of free or of flat sections, as the scene models them."""
+        """Bending moment per voltage [N m/V]; if camber is modelled, that of sections that cannot camber."""
         return self.flat.moment if self.across and self.flat is not None else self.coupling
 
     @property
@@ -318,7 +321,7 @@ class Electrodes(FieldsOnly):
         return 0 < self.resistance < math.inf
 
     def inside(self, fraction: np.ndarray | float) -> Any:
-        """Convert fractions of the layers' length to positions x/L, limited to the layers' ends."""
+        """Convert fractions (0 to 1) of the layers' length to positions x/L, kept just inside their ends."""
         first, last = self.span
         return first + (last - first) * (_EVEN + (1 - 2 * _EVEN) * fraction)
 
@@ -330,5 +333,5 @@ class Electrodes(FieldsOnly):
 
 
 def _added(profile: Profile, span: tuple[float, float], step: float) -> Profile:
-    """Add a constant to a property over a span of x/L."""
+    """Add the constant `step` to a property over a span of x/L."""
     return profile.stepped(np.array(span), np.array([-step, step]))

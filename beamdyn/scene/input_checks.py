@@ -1,6 +1,6 @@
 """Checks of a beam and its mount: inputs that belong together, and probable mistakes of units.
 
-Mistakes are refused, and warned of where the input may be meant.  What makes an answer doubtful is checked in
+Impossible inputs raise an error, unusual ones a warning.  Limits of validity of the theory are checked in
 `beamdyn.scene.validity`, and reported in the results.
 """
 
@@ -20,11 +20,11 @@ from beamdyn.scene.profile import Profile
 from beamdyn.scene.section_matrices import SectionMatrices
 
 Beam = Any  # `beamdyn.scene.beam.Beam`, whose module imports this one
-# Difference of two positions over the length, below which it is rounding: the breakpoints are merged.
+# Distance by which a point may exceed the length, relative to the length, because of rounding errors.
 _ROUNDING = 1e-12
 _TURNS_BACK = np.pi / 2  # kink [rad] of the axis at which the axis runs back on itself
 _GIVE_RADIANS = "is it in degrees? give math.radians(...)"
-OFFSETS = ("mass_offset", "tension_offset")  # distances of centres from the shear centre
+OFFSETS = ("mass_offset", "tension_offset")  # names of distances of these centres from the shear centre
 _MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}
 _BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold the tip itself"}
 
@@ -95,7 +95,7 @@ def check_points(beam: Beam, name: str, wanted: type) -> None:
 
 
 def alike(given: Profile | None, made: Profile | None) -> bool:
-    """Return whether a given property equals the one derived from a section, on any segments."""
+    """Return whether a given property equals the derived one; it may have further breakpoints."""
     return given == made or (
         given is not None and made is not None and given == made.split(given.breakpoints)
     )
@@ -114,7 +114,7 @@ def first_place(profile: Profile) -> float | None:
 
 SLOWEST, FASTEST = 100.0, 20e3  # speeds of sound in a bar [m/s]: hard rubber has 200, diamond 18e3
 _THICKEST = 1 / math.sqrt(12)  # radius of gyration over length, of a rectangle as thick as the beam is long
-_ROUNDING_OF_LENGTHS = 1e-9  # relative rounding error of lengths
+_NEARLY_EQUAL = 1e-9  # tolerance of comparisons of angles [rad], and of radii of gyration (relative)
 
 
 def warn_of_degrees(name: str, angle: float) -> None:
@@ -130,7 +130,7 @@ def warn_of_twist(twist: Profile | None) -> None:
         return
     values = np.concatenate([*twist.end_values(), twist(np.linspace(0, 1, 33))])
     largest = float(values[np.abs(values).argmax()])
-    few_decimals = abs(round(largest, 2) - largest) <= _ROUNDING_OF_LENGTHS
+    few_decimals = abs(round(largest, 2) - largest) <= _NEARLY_EQUAL
     if abs(largest) > 2 * math.pi or (abs(largest) > math.pi and few_decimals):
         warnings.warn(f"twist reaches {_say_degrees(largest)}", stacklevel=3)
 
@@ -182,10 +182,10 @@ def warn_of_stiffness(
 
 
 def _warn_of_gyration(EI: np.ndarray, EA: np.ndarray, most: np.ndarray, name: str) -> None:
-    """Warn of a radius of gyration sqrt(EI / EA) beyond the outer fibre or the length of the beam."""
+    """Warn of a radius of gyration sqrt(EI / EA) above `most` [m], a bound that the warning calls `name`."""
     gyration = np.sqrt(EI) / np.sqrt(EA)
     k = int((gyration / most).argmax())
-    if gyration[k] > most[k] * (1 + _ROUNDING_OF_LENGTHS):
+    if gyration[k] > most[k] * (1 + _NEARLY_EQUAL):
         sentence = (
             f"bending_stiffness = {EI[k]:g} N m2 with axial_stiffness = {EA[k]:g} N: the section's radius of "
             f"gyration, sqrt(E I / E A), would be {gyration[k]:.3g} m, more than {name} = {most[k]:.3g} m; "

@@ -91,7 +91,7 @@ class MeasuredHistory(MeasuredCurves):
     Raises
     ------
     ValueError
-        If times do not ascend or values do not fit.
+        If times do not ascend, or the shape of the values does not fit times and names.
 
     Examples
     --------
@@ -127,7 +127,7 @@ class MeasuredHistory(MeasuredCurves):
 
 @dataclass(frozen=True)
 class MeasuredPeaks(MeasuredCurves):
-    """Largest deflections of the tip in a time window over speed, from a laboratory or another program.
+    """Largest tip deflection in a time window, at some speeds, from a laboratory or another program.
 
     Parameters
     ----------
@@ -149,7 +149,8 @@ class MeasuredPeaks(MeasuredCurves):
     Raises
     ------
     ValueError
-        If speeds do not ascend, the window does not end after it begins, or values do not fit.
+        If speeds do not ascend, the window does not end after it begins, or the shape of the values does not
+        fit the speeds.
 
     Examples
     --------
@@ -201,7 +202,7 @@ class MeasuredLoads(MeasuredCurves):
     Raises
     ------
     ValueError
-        If positions descend or values do not fit.
+        If positions descend, or the shape of the values does not fit positions and names.
 
     Examples
     --------
@@ -251,7 +252,7 @@ class MeasuredResponse(MeasuredCurves):
     phase : array-like, shape (n,), optional
         Phase by which the output leads the input [rad]; without it magnitudes alone are compared.
     output, input : str
-        Observed quantity and excitation of the beam, in the words of `frequency_response`.
+        Observed quantity and excitation of the beam, by their names in `frequency_response`.
     speed : float, optional
         Speed [rad/s]; if not given, the final speed of the scene's motion, or at rest without one.
     uncertainty : float or array-like, broadcast to (n,)
@@ -264,7 +265,7 @@ class MeasuredResponse(MeasuredCurves):
     Raises
     ------
     ValueError
-        If frequencies do not ascend, an amplitude is negative, or values do not fit.
+        If frequencies do not ascend, an amplitude is negative, or there is not one for each frequency.
 
     Examples
     --------

@@ -82,7 +82,7 @@ class MeasuredFrequencies(ReadOnlyArrays):
         super().__post_init__()
 
     def _check_shapes(self) -> None:
-        """Check the mode shapes, and store them as arrays; refuse other numbers of points or modes."""
+        """Store the mode shapes as arrays; refuse shapes that do not fit the frequencies and positions."""
         if self.positions is None and self.shapes is None:
             return
         if self.positions is None or self.shapes is None:

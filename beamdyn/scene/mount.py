@@ -125,7 +125,8 @@ class Mount(OneLine):
         Stiffness of the root against rotation by bending in the direction of the bending angle [N m/rad]:
         inf is clamped, 0 a hinge; a scene accepts finite values up to 1e16 times EI/L of the beam.
     second_root_stiffness : float
-        Stiffness of the root against rotation by bending across [N m/rad], where a second plane is modelled.
+        Stiffness of the root against rotation by bending in the perpendicular direction [N m/rad], where a
+        second plane is modelled.
     precone : float
         Angle eta by which the beam leaves the plane of rotation, positive towards b3 [rad]: less than pi/2
         either way, and only for a beam that points outward.
@@ -133,8 +134,8 @@ class Mount(OneLine):
     Raises
     ------
     ValueError
-        If the radius or a stiffness is negative, an angle exceeds one turn, or the precone is given for no
-        outward beam, or a quarter turn or more.
+        If the radius or a stiffness is negative, an angle exceeds one turn, or the precone is a quarter turn
+        or more, or given for a beam that does not point outward.
 
     Warns
     -----
@@ -181,7 +182,7 @@ class Mount(OneLine):
         ),
     ] = math.inf
     second_root_stiffness: Annotated[
-        float, Described("N m/rad", "k2", "the same for bending in the direction across", **_SPRING)
+        float, Described("N m/rad", "k2", "the same for bending across that direction", **_SPRING)
     ] = math.inf
     precone: Annotated[
         float, Described("rad", "eta", "angle of an outward beam out of the plane of rotation", **_PRECONE)
@@ -221,7 +222,7 @@ class Mount(OneLine):
 
 
 def _spring(name: str, value: object) -> float:
-    """Check a stiffness of zero or more, which may be infinite [N m/rad]."""
+    """Return a stiffness [N m/rad]; raise an error unless it is zero or more, or infinite."""
     if isinstance(value, float) and value == math.inf:
         return value
     try:

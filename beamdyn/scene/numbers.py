@@ -52,7 +52,7 @@ _SIDE_POWERS = {
 
 @cache
 def units() -> dict[str, str]:
-    """Return the SI units of all numbers of scenes, by path; paths of list members have no index."""
+    """Return the SI units of all numbers of scenes, by path; paths of list members have "[]", no index."""
     of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
@@ -68,7 +68,7 @@ def units() -> dict[str, str]:
 
 
 def unit_of(path: str) -> str | None:
-    """Return the SI unit of a number; None if no scene has such a number."""
+    """Return the SI unit of the number at a path; None if no scene has such a number."""
     return units().get(re.sub(r"\[\d+\]", "[]", path))
 
 
@@ -78,7 +78,7 @@ def is_of_motion(path: str) -> bool:
 
 
 def is_speed(path: str) -> bool:
-    """Return whether a path names the speed, or a speed of the motion that replaces it in analyses."""
+    """Return whether a path is "speed", or a speed in the motion, in whose place "speed" is to be given."""
     return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
 
 
@@ -104,7 +104,10 @@ def check_path(argument: str, path: object) -> str:
 
 
 def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
-    """Yield paths and units of the numbers of a class and of its parts, without speeds."""
+    """Yield path and unit of each number among the fields of a class and of their classes, except speeds.
+
+    Each path starts with `path`.
+    """
     if not is_dataclass(made):
         return
     hints = get_type_hints(made, include_extras=True)
@@ -267,7 +270,7 @@ def _as_property(name: str, value: float) -> float | Profile:
 
 
 def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str, float]) -> None:
-    """Refuse a section's sides or material given together with derived properties, or without a rectangle."""
+    """Refuse a section's sides or material, given with derived properties or for a beam without section."""
     if not section:
         return
     name, value = next(iter(section.items()))

@@ -37,15 +37,15 @@ class Physics:
     rotary_inertia : bool
         Rotary inertia of the sections (Rayleigh).
     stretch : bool
-        Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison.
+        Axial stretch and its Coriolis coupling with bending (Yoo and Shin), for comparison with papers.
     large_deflection : bool
         Slopes and angles of any size: the beam vibrates about the equilibrium to which rotation bends it.
         In one plane, in or out of the plane of rotation, it is the inextensible elastica; with both planes,
-        torsion, shear or stretch a geometrically exact beam in space.  It is not combined with camber, and
-        torsion is then that of sections by their constants, with all of their rotary inertia.
+        torsion, shear or stretch a geometrically exact beam in space.  It cannot be combined with camber, and
+        torsion is then described by constants of the sections, with their full rotary inertia.
     branch : {"straight", "bent"}
-        Branch of equilibria under large deflection: "straight" follows from rest as the speed rises,
-        "bent" exists beside it at high speed, bent to the other side.
+        Branch of equilibria under large deflection: "straight" is reached from rest as the speed rises,
+        "bent" is another equilibrium that exists at high speed, bent to the other side.
     camber : bool
         Change of shape of a rectangular section (anticlastic curvature by Poisson's ratio), which a clamped
         root hinders.
@@ -81,7 +81,7 @@ class Physics:
     large_deflection: Annotated[bool, Described(meaning="slopes and angles of any size")] = False
     branch: Annotated[
         Literal["straight", "bent"],
-        Described(meaning="equilibria of large deflection: those reached from rest, or those beside them"),
+        Described(meaning="equilibria of large deflection: reached from rest, or bent to the other side"),
     ] = "straight"
     camber: Annotated[
         bool, Described(meaning="camber of a rectangular section, which a clamped root hinders")
@@ -98,7 +98,7 @@ class Physics:
             raise InvalidValue("physics.camber", True, bound, "leave one of the two out")
 
     def with_large_deflection(self, **chosen: Any) -> Physics:
-        """Return the physics with large deflection, as analyses need that model it in any case.
+        """Return a copy with large deflection and the `chosen` fields, for analyses that always model it.
 
         Raises
         ------
@@ -124,14 +124,14 @@ AUTO_NAME = "auto"
 AUTO = AutomaticPhysics()
 
 
-_WORTH_SAYING = 0.1  # effects smaller than this fraction of the tolerance are not named
+_WORTH_SAYING = 0.1  # errors smaller than this fraction of the tolerance are not named in the warning
 
 # Physics that was chosen for a scene --------------------------------------------------------------
 
 
 @dataclass(frozen=True)
 class JudgedEffect:
-    """An effect beyond the plain beam, its estimated size, and whether it was included.
+    """A physical effect beyond a slender beam bending in one plane: its estimated size, and whether included.
 
     Parameters
     ----------
@@ -145,8 +145,8 @@ class JudgedEffect:
     reason : str
         Why the effect is left out or its size is not known; empty if its size alone decided.
     time, coordinates : float
-        Time of the eigenproblem and number of coordinates with this effect alone, relative to the plain
-        beam; nan where it is left out, or was added for a deflection that was found.
+        Time of the eigenproblem and number of coordinates with this effect alone, relative to the slender
+        beam in one plane; nan where it is left out, or was added later because a result deflected too far.
 
     Examples
     --------
@@ -175,18 +175,18 @@ class PhysicsChoice:
     tolerance : float
         Relative change of the answer that may be left out.
     speeds : tuple of float
-        Speeds at which the effects were judged [rad/s].
+        Speeds at which the sizes of the effects were estimated [rad/s].
     effects : tuple of JudgedEffect
-        The effects that models have, those included first.
+        All effects that can be modelled, those included first.
     model_error : float
         Largest sum of the sizes of the effects left out, as far as they are known: a relative change.
     time, coordinates : float
-        Time of the eigenproblem and number of coordinates, relative to the plain beam.
+        Time of the eigenproblem and number of coordinates, relative to the slender beam in one plane.
     not_modelled : tuple of str
-        Effects that no model here has.
+        Effects that this package does not model.
     beyond_models : float
-        Relative error that all models here share, where it is known: a part of each effect included, from
-        comparisons with solid bodies, and the strain by rotation.
+        Estimated relative error of all models of this package, where it is known: a part of each included
+        effect, from comparisons with solid bodies, and the strain by rotation.
 
     Examples
     --------
@@ -224,7 +224,7 @@ class PhysicsChoice:
 
     @property
     def _plain(self) -> str:
-        """Name of the beam without the included effects: straight, or curved, which always twists."""
+        """Name of the beam without the included effects, with which times are compared, for messages."""
         is_curved = self.physics.large_deflection and "large deflection" not in self.included
         return "the curved beam in space" if is_curved else "the plain beam"
 
@@ -293,7 +293,7 @@ class OfChosenPhysics(Result):
 # Physics that tip loads and springs require ------------------------------------------------------------
 
 ROOT_SPRINGS = "root_stiffness", "second_root_stiffness"
-_ALONG = 1e-12  # component out of the plane of bending, over the load, that counts as rounding
+_ALONG = 1e-12  # component out of the plane of bending, over the load, that counts as rounding error
 # Largest spring stiffness at the root over EI/L: a stiffer spring's rotation is within rounding of a clamp.
 _STIFFEST = 1e16
 # Largest spring stiffness along the beam over EI/L^3: above, rounding hides the spring's deflection.

@@ -41,7 +41,7 @@ class TipMass:
     axial_inertia : float
         Moment of inertia about the direction of the beam axis, through the centre of gravity [kg m2].
     offset_across : float
-        Distance of the centre of gravity from the beam axis, in the direction across of the section at the
+        Distance of the centre of gravity from the beam axis, in the second direction of the section at the
         tip [m]; a beam with it needs a stiffness against torsion.
 
     Raises
@@ -77,7 +77,9 @@ class TipMass:
     ] = 0.0
     offset_across: Annotated[
         float,
-        Described("m", "e_2", "distance of its centre of gravity beside the axis, in the direction across"),
+        Described(
+            "m", "e_2", "distance of its centre of gravity from the axis, across the direction of bending"
+        ),
     ] = field(default=0.0, metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
@@ -107,7 +109,7 @@ class TipMass:
         return self.inertia if self.transverse_inertia is None else self.transverse_inertia
 
     def about(self, across: float) -> TipMass:
-        """Return the body with inertias about a line parallel to its axis at a distance across [m]."""
+        """Return the body with inertias about an axis shifted by `across` [m], in the second direction."""
         if self.offset_across == across:
             return self
         more = self.mass * (self.offset_across - across) ** 2
@@ -162,7 +164,8 @@ class PointSpring:
     stiffness : float
         Force per deflection [N/m], up to 1e9 times EI/L^3 of the beam.
     direction : {"bending", "across"}
-        Direction of the bending angle, or across it, where a second plane is modelled.
+        "bending": the direction of the bending angle; "across": perpendicular to it, where a second plane is
+        modelled.
 
     Raises
     ------
@@ -230,7 +233,7 @@ class TipLoad:
     """
 
     force: Sequence[
-        Annotated[float, Described("N", "F", "force at the tip along b1, b2, b3, of large deflection")]
+        Annotated[float, Described("N", "F", "force at the tip along b1, b2, b3, for large deflection")]
     ] = _NOTHING
     moment: Sequence[Annotated[float, Described("N m", "M", "moment at the tip about b1, b2, b3")]] = _NOTHING
     follows: Annotated[bool, Described(meaning="whether the load turns with the section at the tip")] = False

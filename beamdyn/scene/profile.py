@@ -23,9 +23,9 @@ from beamdyn.common.words import Named, Words
 
 _FIT_NODES = (8, 16, 32, 64, 128)  # numbers of Gauss points tried in turn; 32 resolve a usual smooth taper
 _SHORTEST_SEGMENT = 1e-12  # difference of x/L below which two breakpoints differ only by rounding
-_FIT_TOLERANCE = 1e-13  # rounding error of the user's function, relative to its largest value
+_FIT_TOLERANCE = 1e-13  # largest accepted error of a fit, relative to the function's largest value
 _ZERO = 5e-13  # a property counts as 0 below this fraction of its largest value on a segment
-_NOISE = 8 * float(np.finfo(float).eps)  # noise of the coefficients of a fit, relative to the largest
+_NOISE = 8 * float(np.finfo(float).eps)  # rounding error of the coefficients of a fit, over the largest
 _SPACING = 2.5e-5  # distance in x/L of samples of a user's function: features wider than this are found
 _FEW = 513  # number of samples, denser towards the ends of a segment, at which a fit is compared first
 _AT_ONCE = 4096  # number of samples compared at once, which fit into the processor's cache
@@ -86,7 +86,7 @@ class Profile(FieldsOnly):
         return hash((self.breakpoints, self.coefficients))
 
     def __call__(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate the property at fractions `xi` of the length, of any shape; at a jump, right of it."""
+        """Evaluate the property at fractions `xi` of the length, of any shape; at a jump, its right limit."""
         xi = np.asarray(xi, dtype=float)
         segment = np.searchsorted(self._ends[1:-1], xi, side="right")
         if not self.degree:
@@ -192,7 +192,8 @@ def combine(function: Callable[..., np.ndarray], *profiles: Profile) -> list[Pro
     Parameters
     ----------
     function : callable
-        Function of the values (c, n) of each property that returns the values of k results: shape (k, c, n).
+        Function of the values of each property at n points of c segments, shape (c, n), that returns the
+        values of k results there, shape (k, c, n).
     *profiles : Profile
         The properties that `function` takes.
 
@@ -422,7 +423,7 @@ def _sample(name: str, function: Callable, x: np.ndarray) -> np.ndarray:
 def check_positive(name: str, profile: Profile, power: int = 1) -> None:
     """Refuse a property that is not positive and finite everywhere; the message names it and the place.
 
-    A value counts as zero where its `power` is less than 5e-13 of the largest power on the segment.
+    A value counts as zero where value**power is less than 5e-13 of the largest such power on the segment.
     """
     ends, zero = np.array(profile.breakpoints), _ZERO ** (1 / power)
     values, where = np.stack(profile.end_values()), np.stack([ends[:-1], ends[1:]])

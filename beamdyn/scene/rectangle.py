@@ -37,13 +37,13 @@ from beamdyn.scene.names_elsewhere import FROM_STIFFNESS
 from beamdyn.scene.profile import ONE, Profile, as_profile, combine
 
 # Reduction of a clamp's stiffening in thick sections compared with a plate, fitted to solids of random
-# cantilevers (CalculiX, see `benchmarks.solids`).  The squared Poisson's ratio has the factor
-# 1 + a r + b r^2 of the ratio r of thickness and width; the warping constant 1/(1 + c r^2).
+# cantilevers (CalculiX, see `benchmarks.solids`).  With the ratio r of thickness to width, the squared
+# Poisson's ratio is multiplied by 1 + a r + b r^2, and the warping constant by 1/(1 + c r^2).
 _THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
-# Length of the root on which the clamp stiffens bending in the direction of the width, in widths and in
+# Length near the root over which the clamp stiffens bending in the direction of the width, in widths and in
 # thicknesses; fitted to solids of random cantilevers.
 _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
-# Largest length of the root on which the clamp stiffens bending, over the length of the beam.
+# Largest length near the root over which the clamp stiffens bending, over the length of the beam.
 _LONGEST_REACH = 0.7
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 _ZETA_5 = 1.036927755143369926  # 1 + 1/2^5 + 1/3^5 + ...; scipy.special is slow to import
@@ -101,7 +101,7 @@ class Rectangle:
 
     @cached_property
     def torsion_factor(self) -> Profile:
-        """Torsional constant J of the section over b t^3/3, its value for infinite width (Saint-Venant)."""
+        """Torsional constant of the section over width thickness^3/3, its value for infinite width."""
         return combine(_torsion_factor, self.width, self.thickness)[0]
 
     @cached_property
@@ -123,9 +123,10 @@ class Rectangle:
 
     @cached_property
     def camber_ratio(self) -> Profile:
-        """Effective Poisson's ratio for camber, less than nu in thick sections.
+        """Effective Poisson's ratio for camber, less than Poisson's ratio nu in thick sections.
 
-        The formula nu (1 - 0.975 r + 0.826 r^2)^(1/2), r = t/b, was fitted to solids: docs/conventions.md.
+        The formula nu (1 - 0.975 r + 0.826 r^2)^(1/2), with r = thickness/width, was fitted to solids:
+        docs/conventions.md.
         """
 
         def ratio(b: np.ndarray, t: np.ndarray, nu: np.ndarray) -> np.ndarray:
@@ -136,20 +137,20 @@ class Rectangle:
 
     @cached_property
     def camber_stiffening(self) -> Profile:
-        """Ratio of the bending stiffness of a section that cannot camber to one that does, 1/(1 - nu^2)."""
+        """Bending stiffness of sections that cannot camber over that of free ones, 1/(1 - camber_ratio^2)."""
         return combine(lambda nu: 1 / (1 - nu**2)[None], self.camber_ratio)[0]
 
     @cached_property
     def reach_of_clamp(self) -> float:
-        """Length of the root on which the clamp stiffens bending in the direction of the width [m]."""
+        """Length near the root over which the clamp stiffens bending in the direction of the width [m]."""
         b, t = (float(side(np.zeros(1))[0]) for side in (self.width, self.thickness))
         return _REACH_OF_WIDTH * b + _REACH_OF_THICKNESS * t
 
     def stiffening_across(self, length: float) -> Profile:
         """Compute the bending stiffness along the width near a clamped root over that of free sections.
 
-        The ratio is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, which follows from the sides at the root
-        and is at most 0.7 of the length [m] of the beam.
+        With Poisson's ratio nu it is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, which follows from the
+        sides at the root and is at most 0.7 of the length [m] of the beam.
         """
         nu, reach = self.poissons_ratio or 0.0, min(self.reach_of_clamp / length, _LONGEST_REACH)
         within = tuple(nu**2 * part for part in (1 / 3, -1 / 2, 1 / 6))  # Legendre series of (1 - x/c)^2
@@ -157,11 +158,11 @@ class Rectangle:
 
     @cached_property
     def warping_factor(self) -> Profile:
-        """Warping constant over that of a thin section, b^3 t^3/144, divided by 1 + 7 (t/b)^2 (fitted)."""
+        """Warping constant over width^3 thickness^3/144, that of a thin section; see `_warping_factor`."""
         return combine(_warping_factor, self.width, self.thickness)[0]
 
     def kinks_of_width(self, length: float) -> np.ndarray:
-        """Compute changes of the width's slope at inner breakpoints, for a beam of this length [m]."""
+        """Compute magnitudes of the jumps of the width's slope at inner breakpoints, for a length [m]."""
         left, right = self.width.derivative().end_values()
         return np.abs(left[1:] - right[:-1]) / length
 
@@ -185,7 +186,7 @@ class Rectangle:
 def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
     """Compute the series of 3 J/(b t^3) for arrays of sides b >= t; the result has a further first axis.
 
-    With tanh = 1 its terms add up to a multiple of zeta(5); what is left falls as exp(-n pi b/t).
+    With tanh = 1 its terms add up to a multiple of zeta(5); the remaining terms decrease as exp(-n pi b/t).
     """
     n = np.arange(1, 16, 2)[:, None, None]
     left = ((1 - np.tanh(n * np.pi * b / (2 * t))) / n**5).sum(axis=0)
@@ -233,7 +234,7 @@ class Material(NamedTuple):
     permittivity: float
 
     def held_across(self, ratio: float) -> Material:
-        """Return constants of one direction if both have the same strain, from Poisson's ratio."""
+        """Return the constants along the beam if the strain across is the same, from Poisson's ratio."""
         coupled = self.coupling**2 / self.stiffness
         permittivity = self.permittivity - coupled * (1 + ratio) / (1 - ratio)
         return Material(self.stiffness / (1 - ratio), self.coupling / (1 - ratio), permittivity)
@@ -248,7 +249,10 @@ class Composite(NamedTuple):
 
 
 def composite(inner: float, layer: float, h: float, t: float, sides: int) -> Composite:
-    """Compute integrals for a strip of thickness h between layers of thickness t on one side or both."""
+    """Integrate over the thickness a property of a strip with layers on 1 or 2 sides.
+
+    It is `inner` in the strip of thickness h, and `layer` in the layers of thickness t each.
+    """
     z, area = (h + t) / 2, inner * h + sides * layer * t
     centre = layer * t * z / area if sides == 1 else 0.0
     second = inner * h**3 / 12 + sides * layer * t * (t**2 / 12 + z**2)
@@ -262,10 +266,10 @@ class Laminate(Rectangle):
     Parameters
     ----------
     along : Profile
-        Poisson's ratio over x/L, D12/D11 under the layers.
+        Poisson's ratio over x/L; under the layers the ratio D12/D11 of the plate's bending stiffnesses.
     free : Profile
-        Bending stiffness of a section that cambers freely, over that of the beam, which leaves out that strip
-        and layers camber together.
+        Bending stiffness of a section that cambers freely, over that of the beam model, which neglects that
+        strip and layers have to camber together.
     """
 
     along: Profile = ONE
@@ -273,7 +277,7 @@ class Laminate(Rectangle):
 
     @cached_property
     def ratio(self) -> Profile:
-        """Poisson's ratio along the beam."""
+        """Poisson's ratio of the strip, effective one under the layers, over x/L."""
         return self.along
 
     @cached_property
@@ -301,7 +305,7 @@ def couple(connection: str, width: float, t: float, arm: float, layer: Material,
     Parameters
     ----------
     connection : {"series", "parallel", "unimorph"}
-        The connection.
+        Electrical connection of two layers, or "unimorph" for one layer on one side.
     width, t : float
         Width and thickness of a layer [m].
     arm : float
@@ -323,10 +327,11 @@ def couple(connection: str, width: float, t: float, arm: float, layer: Material,
 def laminate(
     bare: Rectangle, layer: Material, ratio: float, sides: tuple[float, float, int], beam: float
 ) -> tuple[float, float, Composite]:
-    """Compute D12/D11, the stiffness with free camber over `beam` [N m], and the composite of D11 + D12.
+    """Compute D12/D11, the relative bending stiffness with free camber, and the integrals of D11 + D12.
 
-    The sides are the thickness of the strip, that of a layer, and the number of layers. Symbols as in this
-    module.
+    `ratio` is Poisson's ratio of the layers, `sides` are the thickness of the strip, that of a layer, and the
+    number of layers; the stiffness is relative to `beam`, that of the beam model per width [N m].  Symbols as
+    in the docstring of this module.
     """
     nu, (h, t, number) = bare.poissons_ratio or 0.0, sides
     both, opposed = (

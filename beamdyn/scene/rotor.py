@@ -44,11 +44,11 @@ class RotorDrawing(Result):
     length : float
         Length of the beam [m].
     magnification : float
-        Factor by which depth and width of the beam are drawn larger than its length.
+        Factor by which the dimensions of the section are enlarged relative to the length of the beam.
     section_known : bool
-        Whether depth and width are those of a rectangular section; else the beam is drawn as a strip.
-    outline : ndarray, shape (82, 2)
-        Edge of the beam as drawn, in the plane of rotation [m].
+        Whether the beam has a rectangular section, which is drawn; else it is drawn as a strip.
+    outline : ndarray, shape (n, 2)
+        Edge of the beam as drawn, in the plane of rotation [m]: n = 82 without inner breakpoints.
     section : ndarray, shape (4, 2)
         Corners of the root's section as drawn, in the plane of rotation and along its axis [m].
     provenance : Provenance
@@ -118,9 +118,9 @@ def draw(scene: Scene) -> RotorDrawing:
 
     Notes
     -----
-    Lengths along the beam, its radius and the offset of a tip body are to one scale. Depth and width of the
-    section are drawn larger where they would not be seen, by the magnification that the drawing states. Signs
-    of point masses, tip bodies and springs have no scale.
+    Lengths along the beam, its radius and the offset of a tip body are to one scale. The section is enlarged
+    where it would be too thin to be visible, by the magnification that the drawing states. Symbols of point
+    masses, tip bodies and springs are not to scale.
 
     Examples
     --------

@@ -52,7 +52,7 @@ class Scene(OneLine):
     damping_ratio : float
         Modal damping ratio of every mode of the beam at rest, from 0 to below 1.
     gravity : float
-        Gravitational acceleration along -n2 [m/s2].
+        Gravitational acceleration along -n2, a fixed direction in the plane of rotation [m/s2].
     physics : Physics or "auto"
         Effects beyond the slender beam that bends in one plane; "auto": each analysis adds those whose size
         exceeds its tolerance, and its result says which.
@@ -327,7 +327,7 @@ _MOST_DAMPING = 1e6
 
 _SECOND = "second_"  # prefix of properties of bending in the second direction of the section
 _BENDING = "bending_stiffness"
-# Properties of the beam for each effect, of bending in either direction.
+# Property of the beam that each effect needs, for bending in the first direction.
 _NEEDED = {"shear": "shear_stiffness", "rotary_inertia": "rotary_inertia"}
 _REMEDIES = {
     "second_bending_stiffness": GIVE_OR_COMPUTE,
@@ -338,7 +338,7 @@ _REMEDIES = {
 }
 
 
-# Properties needed unless a rectangular section determines them.
+# Properties that torsion needs unless a rectangular section determines them.
 _OF_TORSION = ("torsion_stiffness", "rotary_inertia", "second_rotary_inertia")
 
 
@@ -355,9 +355,9 @@ def _needed_properties(beam: Beam, physics: Physics) -> dict[str, str]:
 
 
 def _check_layers(beam: Beam, physics: Physics) -> None:
-    """Refuse torsion of sections with piezoelectric layers, unless the beam has its stiffness."""
+    """Refuse torsion of sections with piezoelectric layers, unless the beam has a torsional stiffness."""
     if beam.electrodes is not None and beam.torsion_stiffness is None and physics.torsion:
-        bound = "it is not modelled of sections with piezoelectric layers"
+        bound = "it is not modelled for sections with piezoelectric layers"
         raise InvalidValue("physics.torsion", True, bound, "leave it out")
 
 
@@ -380,7 +380,7 @@ _CORNERS = 0.2, 1.2
 # Largest x/L at which a segment near the root that resolves stresses in corners may end.
 _LAST_CORNER = 0.7
 _SHARPEST = 1.0  # change of the width's slope above which camber is wrong by several percent
-_JUMP = 1e-9  # jump of the width, relative to the width, below which it is rounding
+_JUMP = 1e-9  # jump of the width, relative to the width, up to which it counts as a rounding error
 
 
 def _check_width(beam: Beam, physics: Physics) -> None:

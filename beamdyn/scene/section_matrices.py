@@ -2,10 +2,10 @@
 
 Rows and columns belong to the forces and moments (F1, F2, F3, M1, M2, M3) about the axis of the beam: 1
 along it, 2 in the direction of bending and 3 across, in the axes of the section, which the twist turns.  The
-stiffness gives them by stretch, the shears, twist rate and the curvatures about 2 and 3; the mass matrix,
-per length, by accelerations.
+stiffness matrix times the stretch, the two shear strains, the twist rate and the curvatures about 2 and 3
+gives them; the mass matrix, per length, times the accelerations gives the inertial forces and moments.
 
-In shapes of arrays, n and N count sections.
+In shapes of arrays, n is the number of sections.
 """
 
 from __future__ import annotations
@@ -22,13 +22,12 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.scene.profile import Profile, Table, merge_breakpoints, to_profile
 
 SIZE = 6
-UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of given entries
+UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of the upper triangle
 _FORCES = 3  # number of rows of forces; the others are of moments
 LEAST = 1e-10  # smallest accepted eigenvalue of a positive definite matrix scaled to a diagonal of 1
-MOST_ASYMMETRY = (
-    1e-4  # largest difference of two symmetric entries, over the root of their diagonal entries' product
-)
-_PART = 0.1  # least part in the strains of the least eigenvalue, over the largest, of what is named
+MOST_ASYMMETRY = 1e-4  # largest accepted asymmetry of a matrix scaled to a diagonal of 1
+# A row is reported if its component of the least eigenvalue's eigenvector is above this part of the largest.
+_PART = 0.1
 MOST_STRANGENESS = 1e-4  # largest accepted difference, scaled, of a mass matrix from that of a rigid section
 # Properties of the beam that are diagonal entries of the stiffness.
 _DIAGONAL = {
@@ -139,7 +138,7 @@ class SectionMatrices(FieldsOnly):
 
     @cached_property
     def properties(self) -> dict[str, Profile]:
-        """Properties of `Beam` from the matrices: diagonal entries, mass, inertia about its centre."""
+        """Properties of `Beam`: diagonal stiffnesses, mass per length, inertias about the mass centre."""
         found = {name: self.stiffness[UPPER.index((k, k))] for name, k in _DIAGONAL.items()}
         xi, mass = self._at_breakpoints("mass")
         _, _, inertia = split_mass(mass)
@@ -169,7 +168,7 @@ def _profile(name: str, stations: Sequence[float] | np.ndarray, values: np.ndarr
 
 
 def _entries_at_fault(name: str, matrix: np.ndarray) -> str:
-    """Name the entries of a matrix (6, 6) for what has most part in its least eigenvalue, scaled."""
+    """Name the entries of a matrix (6, 6) that cause the smallest eigenvalue of the scaled matrix."""
     shape = np.abs(np.linalg.eigh(_scaled(matrix[None]))[1][0, :, 0])
     rows, letter = np.flatnonzero(shape > _PART * shape.max()), "K" if name == "stiffness" else "M"
     return ", ".join(entry_name(letter, i, j) for i, j in UPPER if i in rows and j in rows)
@@ -198,7 +197,7 @@ def _check_symmetry(name: str, stations: Any, matrices: np.ndarray) -> None:
 
 
 def asymmetry(matrices: np.ndarray) -> np.ndarray:
-    """Compute the largest asymmetry of matrices (sections, 6, 6), over the root of diagonal entries."""
+    """Compute the largest asymmetry of each matrix (sections, 6, 6), scaled to a diagonal of 1."""
     scaled = _scaled(matrices)
     return np.abs(scaled - scaled.swapaxes(1, 2)).max(axis=(1, 2))
 
@@ -214,7 +213,7 @@ def split_mass(matrices: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray
 
 
 def strangeness(matrices: np.ndarray) -> np.ndarray:
-    """Compute the largest scaled difference of mass matrices (6, 6, sections) from rigid sections' ones."""
+    """Compute the largest difference of each scaled mass matrix (6, 6, sections) from a rigid section's."""
     m, (_, c2, c3), _ = split_mass(matrices)
     rigid = matrices.copy()
     rigid[:3, :3], rigid[:3, 3:] = m * np.eye(3)[..., None], 0.0

@@ -36,7 +36,7 @@ def section_tensor(beam: Beam, name: str) -> Tensor:
     beam : Beam
         The beam.
     name : str
-        The property for bending in the first direction; that in the second begins with "second".
+        The property for bending in the first direction; the name of that in the second begins with "second_".
 
     Returns
     -------
@@ -54,7 +54,7 @@ def inertia_about_shear_centre(beam: Beam) -> Tensor:
 
 
 def _turn(beam: Beam, name: str, lever: Profile | None) -> Tensor:
-    """Compute the tensor of a section property, with the mass at a distance across from the axis [m]."""
+    """Compute the tensor of a section property, plus the inertia of the mass at a distance `lever` [m]."""
     first, second = getattr(beam, name), getattr(beam, f"second_{name}")
     if first is None:
         return {}

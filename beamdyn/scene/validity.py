@@ -1,4 +1,4 @@
-"""Reasons why an answer is doubtful: limits of the theory, and input that the model leaves out."""
+"""Warnings about results: limits of validity of the theory, and input that the model does not use."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch ma
 # Acceleration of gravity [m/s2]: a wheel that a road accelerates by more loses contact.
 STANDARD_GRAVITY = 9.81
 _NARROW = 5.0  # width over thickness below which a section does not behave as a plate
-_WORTH_OF_NARROW = 0.01  # largest difference of narrow sections' frequencies from solids: benchmarks.solids
+_WORTH_OF_NARROW = 0.01  # largest relative frequency difference from narrow solid bodies: benchmarks.solids
 # Relative error of frequencies over the change of the width's slope (0.037 at most, in 36 tapered strips
 # compared with strips with a rounded kink, in bending), and the error from which a warning is given.
 _WORTH_OF_KINKS, _SMALL_WORTH = 0.04, 1e-3
@@ -54,13 +54,13 @@ def refuse_bending_in_space(scene: Scene) -> None:
 def refuse_tip_load(scene: Scene) -> None:
     """Refuse a load at the tip in an analysis that models rotation alone (an `InvalidValue`)."""
     if scene.tip_load.acts:
-        bound = "this analysis knows loads by the motion of the carrier alone"
-        remedy = "equilibria, modes, loci and transients have it"
+        bound = "this analysis models only loads by the motion of the carrier"
+        remedy = "equilibria, modes, loci and transients model a load at the tip"
         raise InvalidValue("tip_load.force", scene.tip_load.force, bound, remedy)
 
 
 def warn_of_left_out(scene: Scene) -> Iterator[Statement]:
-    """Yield warnings of unused input, of narrow sections, and of the limits of chosen physics."""
+    """Yield warnings of unused input, narrow sections, kinks of the width, and errors of physics "auto"."""
     if scene.models_width and (section := scene.beam.strip) is not None:
         yield from _warn_of_narrow_section(section)
     if scene.physics.camber and (section := scene.beam.strip) is not None:
@@ -126,7 +126,7 @@ def warn_of_elastic_limit(strain: np.ndarray) -> Iterator[Statement]:
 def warn_of_static_deflection(
     deflection: np.ndarray, length: float, speeds: np.ndarray
 ) -> Iterator[Statement]:
-    """Yield a warning if the static tip deflection [m] at speeds [rad/s] exceeds linear theory."""
+    """Yield a warning if the static tip deflection [m] at speeds [rad/s] is too large for linear theory."""
     bent = np.abs(deflection) > LARGE_DEFLECTION * length
     if bent.any():
         first, worst = np.abs(speeds[bent]).argmin(), np.abs(deflection[bent]).argmax()
@@ -147,7 +147,7 @@ def _bent_too_far(ratio: float, *words: str) -> Statement:
 def warn_of_deflection(
     deflection: np.ndarray, length: float, speeds: np.ndarray | None = None
 ) -> Iterator[Statement]:
-    """Yield a warning if the tip deflection [m], at any of the speeds if given, exceeds linear theory."""
+    """Yield a warning if the tip deflection [m], at any speed if given, is too large for linear theory."""
     large = deflection > LARGE_DEFLECTION * length
     if large.any():
         ratio, at = deflection[large].max() / length, _at_speeds(speeds, large)

@@ -54,7 +54,7 @@ STRAINS = "stretch", "shear", "second shear", "twist rate", "second curvature", 
 class BeamInSpace(FieldsOnly):
     """Beam, clamped or hinged at the root, with arbitrarily large bending, twist, shear and stretch.
 
-    The axes at the root are e1 along the beam, e2 in the direction of bending and e3 across.
+    The axes at the root are e1 along the beam, e2 in the direction of bending and e3 perpendicular to both.
 
     Parameters
     ----------
@@ -180,7 +180,7 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
 
 
 class Work(NamedTuple):
-    """Virtual work of forces at the stations per unit of each coordinate, and its derivatives."""
+    """Virtual work (n,) of forces per unit of each coordinate, and its derivatives `change` (n, n)."""
 
     work: np.ndarray
     change: np.ndarray
@@ -210,7 +210,7 @@ class BentBeam(FieldsOnly):
 
     @property
     def _shortening(self) -> np.ndarray:
-        """Derivative of the axial stretch at each Gauss point by the twist rate (trapeze effect)."""
+        """Derivative of axial stretch with respect to twist rate at each Gauss point (trapeze effect)."""
         return -self.beam.fibres * (self.strains[..., 3, :] + self.beam.pretwist)
 
     @cached_property
@@ -254,7 +254,10 @@ class BentBeam(FieldsOnly):
         return self.beam.masses.turned(self.rotations, self.positions)
 
     def strain_rates(self, rates: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute rates of stretch and shears, and of curvatures, in fixed axes: (..., 3, points) each."""
+        """Compute time derivatives of stretch and shears, and of curvatures, from `rates` of coordinates.
+
+        Both have the shape (..., 3, points), with components along the axes at the root.
+        """
         stretch, bending = np.split(self.beam.strained(rates), 2, axis=-2)
         if self.beam.shears:
             stretch[..., 0, :] += self._shortening * bending[..., 0, :]
@@ -262,7 +265,10 @@ class BentBeam(FieldsOnly):
         return stretch, turn(self._within, bending)
 
     def shortening_rate(self, rates: np.ndarray) -> np.ndarray:
-        """Compute the stretch's second rate (..., 3, points) due to squared twist rates (trapeze effect)."""
+        """Compute the part of the stretch's second time derivative due to squared twist rates.
+
+        Its shape is (..., 3, points), with components along the axes at the root (trapeze effect).
+        """
         twist_rate = rates @ self.beam.functions[:, 3]
         return -(self.beam.fibres * twist_rate**2)[..., None, :] * self._within[..., 0, :]
 
@@ -270,16 +276,16 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _root(self) -> BentBeam:
-        """Arc that models the sprung root, at these coordinates; its end is the root of the beam."""
+        """Arc that models the sprung root, at these coordinates; its end is the beam's root."""
         return self.beam.arc.at(self.q)
 
     @cached_property
     def _mean_of_arc(self) -> np.ndarray:
-        """Mean rotation matrix (..., 3, 3) along the arc; it maps changes of the rotation vector."""
+        """Mean rotation matrix (..., 3, 3) along the arc: angular velocity per rotation vector's rate."""
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, sections) from rates of coordinates and curvatures."""
+        """Compute angular velocities (..., 3, sections) from rates of coordinates and of curvatures."""
         turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
         return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 
@@ -325,7 +331,7 @@ class BentBeam(FieldsOnly):
     # Virtual work of forces at the stations -----------------------------------------------------------
 
     def under(self, forces: StationForces) -> Work:
-        """Compute the virtual work of forces at the stations, with its derivatives by the coordinates."""
+        """Compute virtual work of forces at the stations and its derivatives with respect to coordinates."""
         resultants = self._resultants(forces.force)
         change = self._change_by(*resultants) + self._of_stations(forces.tangent)
         return Work(self._work_of(*resultants), change)
@@ -346,7 +352,7 @@ class BentBeam(FieldsOnly):
         return n, stations.from_sections(moments), moments.sum(axis=-1)
 
     def _work_of(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the virtual work per coordinate of resultants (..., 3, points) and of a root moment."""
+        """Compute the virtual work per coordinate of what `_resultants` returns: n, m, and root moment."""
         beam, functions, back = self.beam, self.beam.flat_functions, self._within.swapaxes(-3, -2)
         stress = turn(back, m)
         if beam.shears:
@@ -359,7 +365,10 @@ class BentBeam(FieldsOnly):
         return work + (at_root[..., None, :] @ self._mean_of_arc)[..., 0, :] @ beam.hinges.T
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the derivative by the coordinates of the virtual work of fixed resultants (3, points)."""
+        """Differentiate the virtual work of constant n, m and root moment by the coordinates: (n, n).
+
+        The forces and moments are what `_resultants` returns.
+        """
         beam, W = self.beam, self._turned[..., :-1]
         change = self._change_by_moments(m) + _product(W, cross(self.displacement_rates, n))
         if beam.shears:
@@ -406,7 +415,7 @@ class BentInPlane(BentBeam):
         return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the derivative by the coordinates of the virtual work of fixed resultants (3, points)."""
+        """Differentiate the virtual work of constant n, m and root moment by the coordinates: (n, n)."""
         angles, along = self.beam.angles[:, :-1], (self.tangents[:2] * n[:2]).sum(axis=0)
         return (angles * -along) @ angles.T
 

@@ -64,7 +64,7 @@ from beamdyn.scene.sections import offset_components
 _AXES = np.eye(3)
 _KEPT = 4  # number of recently computed states of the beam that are cached
 _SIGNS = 1.0, 1.0, 1.0, -1.0, -1.0, 1.0  # -1 for strains whose field rotates sections about a negative axis
-# Direction of the deflection that each block of a bent beam describes, by name of the block.
+# Words for the two directions of deflection, which end the names of a bent beam's deflections.
 _DIRECTIONS = "in the direction of bending", "across"
 _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
 # Quantities of root motion that load the beam.
@@ -72,7 +72,7 @@ QUANTITIES: tuple[Quantity, ...] = "speed_squared", "acceleration", *_ROOT
 
 
 def _strains_of_fields(scene: Scene) -> dict[str, tuple[int, int, RootConditions]]:
-    """Find the strain that each displacement field causes: index in `STRAINS`, derivative order, and root."""
+    """Find each displacement field's strain: index in `STRAINS`, derivative order, and root conditions."""
     mount, warps = scene.mount, scene.modelled_beam.warping_stiffness is not None
     root, resists = (CLAMPED, "warping_stiffness") if warps else (FIXED, "torsion_stiffness")
     return {
@@ -186,7 +186,7 @@ def _masses_of_sections(beam: Beam, xi: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def _tension(beam: Beam, xi: np.ndarray) -> np.ndarray:
-    """Evaluate offsets of tension centres [m] in the direction of bending and across (rows), at xi = x/L."""
+    """Evaluate offsets of tension centres [m] along e2, the direction of bending, and e3 (rows), at x/L."""
     if beam.matrices is not None:
         K = beam.matrices.at("stiffness", xi)
         return np.stack([-K[0, 5], K[0, 4]]) / K[0, 0]
@@ -289,7 +289,7 @@ class RotatingBeam(FieldsOnly):
         return q @ self.beam.functions[:, -1] @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Compute the angle between the tip and e1 [rad] at q; signed only for bending in one plane."""
+        """Compute the angle between the tip and the root's axis e1 [rad]; signed for bending in one plane."""
         if self.beam.is_planar:
             return float(q @ self.beam.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
@@ -347,7 +347,7 @@ class BentState(FieldsOnly):
         return euler - euler.T
 
     def steady(self) -> SteadyPencil:
-        """Return the equations of small motions at steady speed, in which inertial forces are the load."""
+        """Return the equations of small motions at steady speed; `f2` is the load by centrifugal forces."""
         linear, (force, K2) = self.of.linear, self.under(self.of.turning)
         K0 = linear.matrices[0]["unity"] + (self.under({"unity": 1.0}).change if self.of.load else 0.0)
         C = linear.matrices[1].get("unity", np.zeros_like(K0))
@@ -402,7 +402,7 @@ class DeflectedFunctions(FieldsOnly):
     place : slice
         Slice of the coordinates of one block.
     direction : int
-        0 for the direction of bending at the root, 1 for that across.
+        0 for the direction of bending at the root, 1 for the perpendicular direction.
     """
 
     bent: bent_beam.BentBeam

@@ -75,7 +75,7 @@ class Bending(TransverseField):
 
 
 class SecondBending(Bending):
-    """Bending in the direction across, for scenes with two planes of bending."""
+    """Bending perpendicular to the direction of the bending angle, in scenes with two planes of bending."""
 
     name = "second bending"
     direction = 1
@@ -112,7 +112,7 @@ class Shear(TransverseField):
 
 
 class SecondShear(Shear):
-    """Shear deflection in the direction across, for scenes with shear and two planes of bending."""
+    """Shear deflection perpendicular to the bending angle's direction, in scenes with both planes."""
 
     name = "second shear"
     direction = 1

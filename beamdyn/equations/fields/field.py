@@ -79,7 +79,7 @@ class Deflection:
     Q, Q_across : ndarray, shape (n,)
         Loads under a unit angular acceleration in the plane of the deflection, and in the other plane [kg m].
     direction : int
-        0 for deflection in the direction of the bending angle, 1 for the direction across.
+        0 for deflection in the direction of the bending angle, 1 for the perpendicular direction.
     """
 
     space: Functions
@@ -99,20 +99,20 @@ class SectionFunctions(Protocol):
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate of the tip's corner in the direction across, up to a factor."""
+        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates, or one proportional to it."""
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate the functions at k positions x/L along and l positions 2 y/b across: (functions, k, l)."""
+        """Evaluate the functions at k positions x/L and l positions 2 y/width across: (functions, k, l)."""
         ...
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate second derivatives with respect to 2 y/b, averaged over the width, at positions x/L."""
+        """Evaluate second derivatives with respect to 2 y/width, averaged over the width, at x/L."""
         ...
 
 
 class Coordinates(Protocol):
-    """Trial functions of a field, reduced to what the equations of motion use of a `Space`."""
+    """The part of the interface of trial functions (`Space`) that the equations of motion use."""
 
     @property
     def size(self) -> int:
@@ -159,7 +159,7 @@ class Field(ABC):
     In order to add a field, write a subclass in a module of its own in `beamdyn.equations.fields`, and
     name it in the list `FIELDS` there:
 
-    1. `name` identifies the field in `Term.rows` and `Term.columns`; nothing else reads it.
+    1. `name` identifies the field in `Term.rows` and `Term.columns`.
     2. `requires` has the values of `Physics` with which a scene has the field, or `is_modelled` decides
        whether it has.  A scene without the field needs no extra computing time.
     3. `assemble` takes functions that satisfy the conditions at the root from the discretization, by

@@ -138,7 +138,10 @@ class SectionMotion:
 
     @cached_property
     def beside(self) -> np.ndarray:
-        """Displacement of the mass centre relative to the axis, per component of the offsets c, t: (3, 4)."""
+        """Displacement of the mass centre relative to the axis along b1, e1, e2 by a unit motion: (3, 4).
+
+        The columns are its parts per unit of each component of the offsets c and t: c1, c2, t1, t2.
+        """
         moved = np.zeros((3, 4))
         # The displacement is K c: offset c of the mass centre, rotated by 90 degrees in the section.
         if self.rotation == _TURN:
@@ -149,7 +152,7 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4)."""
+    """Differentiate the mass centre's displacement with respect to both rotations: (3, 4) as `beside`."""
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
@@ -184,7 +187,7 @@ def _pulled(beam: Beam) -> list[list[Profile | None]]:
 
 
 class _CoupledMatrix(NamedTuple):
-    """Matrix over the coordinates of two motions; the equations of both motions contain it, with a sign."""
+    """Matrix in the equations of `rows`; those of `columns` contain its transpose times `mirrored`."""
 
     rows: str
     columns: str
@@ -273,7 +276,7 @@ class Offsets:
 
     @cached_property
     def _beside_axis(self) -> list[tuple[Quantity, np.ndarray]]:
-        """Accelerations of the mass centre relative to the axis, by offsets of mass and tension centre."""
+        """Accelerations of the mass centre relative to the axis per component of the offsets: (3, 4) each."""
         (B, P), none = self.frame, np.zeros((3, 2))
         return [
             ("acceleration", np.hstack([B[:, 1:], none])),
@@ -401,7 +404,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices of the work of shear forces on the axis' displacement along bending's slope."""
+        """Yield matrices for the work of transverse forces, as tension centres' offsets change the slope."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):
@@ -458,7 +461,7 @@ class Offsets:
                 yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
     def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
-        """Yield coefficients of mass and tension offsets in the work on a motion, with powers of x.
+        """Yield, by quantity of root motion, offsets' coefficients in the work on a motion, and powers of x.
 
         The work of the axial force, which acts at the centre of tension, is a separate load.
         """

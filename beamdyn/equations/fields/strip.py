@@ -26,7 +26,9 @@ _ZERO = 1e-12  # averages over the width below this fraction of the largest are 
 
 
 class Derivative(NamedTuple):
-    """Summand of a derivative of the deflection: factor(x), derivative of u_k(x), function of eta.
+    """Summand of a derivative of the deflection: factor(x) times derivative of u_k(x) times functions of eta.
+
+    The deflection is the sum over k of functions u_k along times functions p_k across the strip.
 
     Parameters
     ----------
@@ -34,8 +36,8 @@ class Derivative(NamedTuple):
         Factor along the beam.
     order : int
         Order of the derivative of u_k with respect to x.
-    across : ndarray, shape (k, q)
-        Functions of eta, for each k, at the Gauss points across.
+    across : ndarray, shape (functions, points)
+        Functions of eta = 2 y/b, for each k, at the Gauss points across the width b.
     """
 
     factor: Profile
@@ -118,7 +120,7 @@ def over_tip(width: Profile) -> Profile:
 def _parts_over_fixed_width(
     width: Profile, numbers: tuple[int, ...], eta: np.ndarray
 ) -> dict[str, list[Derivative]]:
-    """Split derivatives of p_k(2 y/b(L)) u_k by powers of 2 y/b and of the ratio of width to tip width."""
+    """Split derivatives of p_k(2 y/tip width) u_k(x) into powers of 2 y/width and of width/tip width."""
     r, dy = over_tip(width), 2 / float(width.end_values()[1][-1])
     series = (np.sqrt(2 * k + 1) * legendre.leg2poly(np.eye(k + 1)[k]) for k in numbers)
     coefficients = np.array([np.pad(c, (0, max(numbers) + 1 - len(c))) for c in series])
@@ -200,7 +202,7 @@ class Strip:
         columns: tuple[WidthFunctions, str],
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
-        """Integrate over x a weight times the width mean of two derivatives times a function across.
+        """Integrate over x a weight times the mean over the width of two derivatives times `across`.
 
         Each derivative is named by the functions and a label such as "w_xx".
         """
@@ -226,7 +228,7 @@ class Strip:
         along: Space,
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
-        """Integrate over x a weight times the width mean of one derivative times a function across."""
+        """Integrate over x a weight times the mean over the width of a derivative times `across`."""
         _, of_points = gauss_rule(self.points)
         functions, name = rows
         L, total = self.scene.beam.length, 0.0
@@ -236,7 +238,7 @@ class Strip:
         return np.atleast_1d(total)
 
     def stiffness(self, rows: WidthFunctions, columns: WidthFunctions, warping: Profile = ONE) -> np.ndarray:
-        """Compute the plate's stiffness matrix [N/m]; `warping` is a factor of its stiffness against w_xx."""
+        """Compute the plate's stiffness matrix [N/m]; `warping` multiplies the stiffness along the beam."""
         section, EI = self.section, self.scene.beam.bending_stiffness
         D, bend = EI * section.camber_stiffening, self.integrate
         cross = D * _root(warping) * section.camber_ratio
@@ -289,11 +291,11 @@ class StackedSpace:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection per coordinate at the tip's corner in the direction across."""
+        """Deflection of the tip's corner at eta = 2 y/width = 1 per unit of each coordinate."""
         return np.kron(np.sqrt(2 * np.array(self.numbers) + 1), self.along.end(0))
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate the deflections at positions x/L along and 2 y/b across: (coordinates, along, across)."""
+        """Evaluate the deflections at positions x/L and 2 y/width: shape (coordinates, along, across)."""
         numbers = np.array(self.numbers)
         places = np.multiply.outer(self.stretch(xi), eta)
         across = legendre.legvander(places, numbers.max())[:, :, numbers] * np.sqrt(2 * numbers + 1)
@@ -301,7 +303,7 @@ class StackedSpace:
         return values.reshape(self.size, len(xi), len(eta))
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate second derivatives with respect to eta = 2 y/b, averaged over the width, at xi = x/L.
+        """Evaluate second derivatives with respect to eta = 2 y/width, averaged over the width, at x/L.
 
         An even Legendre polynomial's second derivative has the mean k(k + 1)/2, its slope at an edge.
         """

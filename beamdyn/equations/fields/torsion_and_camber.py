@@ -30,7 +30,7 @@ a Kirchhoff plate of the stiffness D per width, with D b = E I/(1 - nu^2), is
 
 The factor c = 3 J/(b t^3) makes torsion that of a rectangle of finite width, whose constant J is
 Saint-Venant's.  In torsion, w_xx^2 has the factor g, the ratio of the section's warping constant to that of a
-thin one, and 2 nu w_xx w_yy has the root of g; in thick sections nu is a smaller ratio (`Rectangle`), and
+thin one, and 2 nu w_xx w_yy has sqrt(g); in thick sections nu is a smaller ratio (`Rectangle`), and
 torsion also has the rotary inertia of the thickness.  Rotation at the speed omega about
 the unit vector a adds
 
@@ -187,7 +187,7 @@ def _tip_body(scene: Scene) -> TipMass:
 
 @lru_cache(maxsize=64)
 def _inertias(beam: Beam) -> tuple[Profile, Profile, Profile | None]:
-    """Compute R11 + R22, R22 - R11, and R12 if not 0, about the shear centre, the axis of twist."""
+    """Compute R11 + R22, R22 - R11, and R12 if not 0, of the rotary inertia R about the shear centre."""
     R = inertia_about_shear_centre(beam)
     return R[0, 0] + R[1, 1], R[1, 1] + R[0, 0].scaled(-1.0), R.get((0, 1))
 
@@ -229,7 +229,7 @@ class SectionField(Field):
     first: ClassVar[int]
 
     def complete(self, scene: Scene) -> Scene:
-        """Return the scene with this field and, if rectangular, as a flat strip with Poisson's ratio."""
+        """Return the scene with this field; a rectangular section gets Poisson's ratio, and no twist."""
         section = scene.beam.section
         if section is None:
             return scene
@@ -238,7 +238,7 @@ class SectionField(Field):
         return replace(scene, beam=beam, physics=replace(scene.physics, **{self.name: True}))
 
     def numbers(self, count: int) -> range:
-        """Return the numbers k of this field's functions, of `count` functions across beyond the mean."""
+        """Return those numbers k of functions across the width, from 1 to `count`, that this field has."""
         return range(self.first, count + 1, 2)
 
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:

@@ -276,7 +276,7 @@ def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, fl
 
 
 def axis_in_section(scene: Scene) -> tuple[float, float]:
-    """Compute the rotation axis' components in the direction of bending at the root, and across."""
+    """Compute the rotation axis' components in the direction of bending at the root, and perpendicular."""
     (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     return cosine * s, cosine * c
 
@@ -308,7 +308,7 @@ def _terms(pair: Pair) -> Iterator[Term]:
 
 
 def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
-    """Yield the work of centrifugal forces on masses that move in the plane of rotation or tilt out of it."""
+    """Yield terms of centrifugal forces on masses that move in the plane of rotation or tilt out of it."""
     (i, j), beam, (d, n) = pair.directions, pair.rows.beam, plane_components(pair.rows.scene)
     if softening := d[i] * d[j] + sine**2 * n[i] * n[j]:
         yield pair.term("spin softening", pair.translation, "speed_squared", -softening)
@@ -353,7 +353,7 @@ def _coriolis(pair: Pair) -> Iterator[Term]:
 
 
 def _euler_of_turned(pair: Pair, sine: float) -> Iterator[Term]:
-    """Yield the work of Euler forces on sections and tip body that tilt and turn about the beam.
+    """Yield the terms of Euler forces on sections and tip body that tilt and turn about the beam.
 
     The matrix is the symmetric part of B T, with the inertia B and the rotation T by 90 degrees about the
     beam.

@@ -29,9 +29,9 @@ _CONVERGED = 1e-14
 _STALLED = 1e-9
 _STRAYED = 0.5  # ratio of correction to step length above which a step may have reached another curve
 _LOOSE = 2.0  # largest ratio of correction to step length if both ends are known to be on one curve
-_SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix, below which it counts as rounding
+_SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix, below which it counts as rounding error
 _MOST_TURNS = 20 * np.pi  # largest angle [rad] by which a load may bend or twist a section
-_NEAR = 1e-4  # arc length within which a reversal of direction is a bifurcation, not another curve
+_NEAR = 1e-4  # step below which a change of stability that is no turning point counts as a bifurcation
 # Longest step towards a wanted parameter, over the distance to it along the tangent: a step passes the wanted
 # parameter only where the curve is nearly straight, and then has a single solution there.
 _PAST = 1.05
@@ -137,7 +137,7 @@ class Point:
 
 
 def solve_at(load: Loading, q: np.ndarray, p: float, most: float = np.inf) -> np.ndarray:
-    """Solve r(q, p) = 0 for q by Newton's method.
+    """Solve the equilibrium equations r(q, p) = 0 of a load for the coordinates q, by Newton's method.
 
     Raises
     ------

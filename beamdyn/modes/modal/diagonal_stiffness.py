@@ -14,7 +14,8 @@ _EPS = np.finfo(float).eps
 # Rounding errors in addition to those of `equations_of_motion`: ratios of the rounding errors of beams in two
 # planes, and of beams on root springs, to those of a clamped beam in one plane.
 _TWO_PLANES, _ON_SPRINGS = 3.0, 2.0
-_CANCELLED = 0.5 * _EPS  # relative error by stiffness entries that cancel if pretwist couples two planes
+# Relative rounding error of stiffness entries, which matters where they cancel, as in pretwisted beams.
+_CANCELLED = 0.5 * _EPS
 # Error of mu = 1/w^2 relative to the largest mu, five times the error measured at mode 100.
 _FORWARD = 0.5 * _EPS
 LEAST_STIFFNESS = 0.1  # ratio of stiffness to that at rest below which the eigenproblem is shifted
@@ -45,7 +46,7 @@ def solve_diagonal(
     z : ndarray, shape (S, coordinates, modes)
         Mass-normalised modes.
     rounding : ndarray, shape (S, modes)
-        Relative error of w by the eigensolver.
+        Estimated relative error of w caused by the eigensolver.
     """
     stiff, lowest = stiffness.min(axis=1) >= LEAST_STIFFNESS, lowest_at_rest * np.ones(len(stiffness))
     if stiff.all():
@@ -60,7 +61,7 @@ def solve_diagonal(
 
 
 def inverse_squares(mass: np.ndarray, stiffness: np.ndarray, count: int) -> np.ndarray:
-    """Compute the largest 1/w^2 as `solve_diagonal` does, for stiffnesses from `LEAST_STIFFNESS` on."""
+    """Compute the largest 1/w^2 as `solve_diagonal` does, for stiffnesses of at least `LEAST_STIFFNESS`."""
     scale = 1 / np.sqrt(stiffness)
     mu = np.linalg.eigvalsh(scale[:, :, None] * mass * scale[:, None, :])
     return above_rounding(mu[:, : -count - 1 : -1])
@@ -115,7 +116,7 @@ def above_rounding(mu: np.ndarray) -> np.ndarray:
 
 
 def forward_error(mu: np.ndarray) -> np.ndarray:
-    """Estimate the relative error of 1/sqrt(mu) by the eigensolver, for descending mu."""
+    """Estimate the relative error that the eigensolver causes in w = 1/sqrt(mu), for descending mu."""
     return _FORWARD * mu[..., :1] / mu
 
 

@@ -91,7 +91,7 @@ class Eigensolver(ABC):
         return self.pencil.conservative
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the products v K v at rest and v M v of vectors v in rows: one number for each vector."""
+        """Compute v K v and v M v of each row v, with the stiffness K at rest and the mass matrix M."""
         return np.real(np.vecdot(v, v @ self.pencil.K0)), np.real(np.vecdot(v, v @ self.pencil.M))
 
     @cached_property
@@ -102,7 +102,7 @@ class Eigensolver(ABC):
     @property
     @abstractmethod
     def softening(self) -> float:
-        """Largest loss of stiffness per squared speed [s2], over that at rest; 0 if it is within rounding."""
+        """Largest relative loss of stiffness per squared speed [s2]; 0 if it is within rounding errors."""
 
     @property
     def critical_speed(self) -> float:
@@ -164,7 +164,7 @@ class Solver(Eigensolver):
 
     @cached_property
     def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Growth of the diagonal stiffness with squared speed, basis and mass matrix of its coordinates."""
+        """Coordinates with diagonal stiffness: its growth with squared speed, their basis and mass matrix."""
         L = self._at_rest
         K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
         growth, Q = np.linalg.eigh(K2)
@@ -197,9 +197,10 @@ class Solver(Eigensolver):
         return (lowest, float(lost / lowest)) if lowest > lost else (0.0, np.inf)
 
     def factor(self, speeds: np.ndarray) -> Factored | None:
-        """Factor the stiffness of conservative equations at one speed [rad/s]: matrices L and L^-1 M L^-T.
+        """Factor the stiffness of conservative equations at one speed [rad/s] as L L^T.
 
-        Returns None for more speeds, or if the stiffness is below `LEAST_STIFFNESS` times that at rest.
+        The result is L, and L^-1 M L^-T of the mass matrix M; None for more speeds, or if the stiffness is
+        below `LEAST_STIFFNESS` times that at rest.
         """
         if len(speeds) > 1 or self.pencil.shift or not self.pencil.conservative:
             return None

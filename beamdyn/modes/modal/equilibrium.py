@@ -158,7 +158,7 @@ class DeflectedSolver(Solver):
     elastica : RotatingBeam
         Equations of motion.
     branch : {"straight", "bent"}
-        Branch of equilibria: the one continued from rest, or the one next to it.
+        Branch of equilibria: the one continued from rest, or the stable one bent to the opposite side.
     guide : DeflectedSolver, optional
         Solver of another discretization, whose equilibria are used as initial guesses.
     """

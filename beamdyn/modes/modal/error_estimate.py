@@ -254,7 +254,7 @@ def error_of_assumed_modes(
     squared : ndarray, shape (S, modes)
         Squares of the eigenvalues.
     distance : ndarray, shape (S, modes)
-        Distances of the squares from those of the coarser basis.
+        Differences between the squares and those of the coarser basis.
     rounding : ndarray, shape (S, modes)
         Relative error of the eigenvalues by rounding.
     lowest_at_rest : ndarray, shape (S,)

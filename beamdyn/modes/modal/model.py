@@ -73,10 +73,10 @@ class Model(FieldsOnly):
         return self._in_functions_of(self.scene.modelled_beam)
 
     def equations_near(self, scene: Scene) -> Equations:
-        """Build the equations of a scene that differs little, in the same functions where these suit it.
+        """Build the equations of a scene that differs little, in this model's functions where they suit it.
 
-        Matrices of nearby scenes then change smoothly.  Functions of bending moments, which depend on all
-        properties of the beam, may otherwise be others after the smallest change.
+        Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
+        properties of the beam, may differ abruptly after the smallest change of these.
         """
         nearby = Model(scene, self.discretization)
         beam = self.scene.modelled_beam
@@ -155,7 +155,7 @@ class Model(FieldsOnly):
         return self.deflected.tips(speeds)
 
     def over_strip(self, along: int, across: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Compute n x k mesh points over a strip: x [m], eta from 1 to -1, and y = -eta b/2 [m] (n, k).
+        """Compute n x k mesh points over a strip: x [m], eta from 1 to -1, y = -eta width/2 [m] (n, k).
 
         Returns None if the sections keep their shape, or if their width is not known.
         """
@@ -263,7 +263,7 @@ def warn_of_rotation(model: Model, speed: float) -> Iterator[Statement]:
 
 
 def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -> Iterator[Statement]:
-    """Yield a warning at speeds at which the straight beam is unstable, as it bends at a lower speed."""
+    """Yield a warning at speeds at which the straight beam is unstable, if rotation bends it before that."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
         end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
@@ -385,8 +385,8 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
     Returns
     -------
     ndarray, shape (coordinates, shapes)
-        Shapes in columns, with unit mass and a diagonal stiffness at rest; m is smaller than the total
-        number of modes if those of different speeds are linearly dependent.
+        Shapes in columns, with unit mass and a diagonal stiffness at rest; fewer than all modes together if
+        those of different speeds are linearly dependent.
     """
     vectors = Solver(pencil).solve(np.asarray(speeds, dtype=float), min(modes, len(pencil.M))).vector
     if tuple(speeds) == (0.0,):

@@ -85,7 +85,7 @@ class UncoupledSolver(Eigensolver):
         return all(solver.conservative for solver in self.solvers)
 
     def energies_at_rest(self, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the products v K v at rest and v M v of vectors v in rows: one number for each vector."""
+        """Compute v K v and v M v of each row v, with the stiffness K at rest and the mass matrix M."""
         parts = zip(self.parts, self.solvers, strict=True)
         stiffness, mass = np.sum([solver.energies_at_rest(v[:, part]) for part, solver in parts], axis=0)
         return stiffness, mass

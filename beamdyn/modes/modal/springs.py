@@ -21,7 +21,7 @@ _GRADED = 1e-6  # smallest eigenvalue of a well-conditioned stiffness that is sc
 _GRADED_AT_REST = 1e-12
 # Ratio of a rotation's damping rate to the clamped beam's frequency below which the rotation is undamped.
 _UNDAMPED = 1e-6
-# Ratio of the largest squared speed of the search to that at which rotation affects the stiffness.
+# Ratio of the smallest squared speed that is tried to that at which rotation affects the stiffness.
 _SMALLEST_TRIAL = 1e-12
 # Ratio of a squared frequency to the squared speed below which the beam turns freely, within rounding.
 _NEUTRAL = 1e-12

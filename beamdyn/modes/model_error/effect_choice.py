@@ -1,6 +1,7 @@
 """Automatic choice of the physics: the effects that a result needs in order to meet a tolerance.
 
-The size of an effect is the relative change that it causes.  Sizes are estimated for the plain beam.  The
+The size of an effect is the relative change that it causes.  Sizes are estimated for the plain beam, an
+Euler-Bernoulli beam that bends in one plane.  The
 largest effect is added, and the others are estimated again for the beam with it, until the sizes of the
 neglected effects, summed for each value of the result, are at most half the tolerance, as an estimate may be
 too low by a factor of two.  Effects below a tenth of the tolerance are not added.  Large deflection excludes
@@ -153,7 +154,7 @@ def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, toler
 
 
 def plain_physics(scene: Scene) -> Scene:
-    """Replace physics "auto" by that of the plain beam, for analyses that support only the plain beam.
+    """Replace physics "auto" by that of an Euler-Bernoulli beam in one plane, where no effect may be added.
 
     A beam with a curved axis bends in both directions and twists under any load, as far as it has the data:
     it is always modelled in space.
@@ -162,7 +163,7 @@ def plain_physics(scene: Scene) -> Scene:
 
 
 def _plain_of(beam: Beam) -> Physics:
-    """Choose the simplest physics that can describe the axis of a beam: plain unless the axis is curved."""
+    """Choose the simplest physics for a beam: Euler-Bernoulli in one plane if its axis is straight."""
     if beam.matrices is not None:
         return Physics(2, shear=True, rotary_inertia=True, stretch=True, torsion=True, large_deflection=True)
     if not beam.is_curved:
@@ -253,7 +254,7 @@ def bend_for_peak(scene: Scene, deflection: float) -> Scene | None:
 
 
 def warn_of_plain(scene: Scene) -> Iterator[Statement]:
-    """Yield a warning if physics "auto" is given to an analysis that supports only the plain beam."""
+    """Yield a warning if physics "auto" is given to an analysis that cannot add effects to the model."""
     if scene.chooses_physics:
         plain = "curved beam in space" if plain_physics(scene).physics.large_deflection else "plain beam"
         said = f"physics = auto: nothing is added here, the answer is that of the {plain}"

@@ -49,7 +49,7 @@ from beamdyn.scene.scene import Scene
 # Reasons why large deflection cannot be added, by the name of the field in the error raised.
 _TWO_PLANES = "not estimated for two planes, where modes may cross"
 _OF_BENDING = "computed only for bending modes"
-_HINGED = "a beam on a hinge has no one equilibrium from which it could bend"
+_HINGED = "a beam on a hinge has no unique equilibrium from which it could bend"
 _REFUSED = {
     "mount.bending_angle": "computed only if the bending angle is a multiple of 90 deg",
     "mount.precone": "computed only without precone",
@@ -60,7 +60,7 @@ _NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not bu
 _BENT = Setting("physics", large_deflection=True, branch="bent")
 _BUCKLED = Words("the straight beam is unstable: ", _BENT, " bends it")
 _NOT_FOUND = "the equilibrium was not found"
-_LOST = "it turns a mode into others"
+_LOST = "no single mode with it corresponds to a mode without it"
 _UNSTABLE = "estimated for the straight beam, which is unstable"
 _STRAIGHT = "as of the straight beam"
 _STILL = "estimated for the straight beam, which does not deflect"

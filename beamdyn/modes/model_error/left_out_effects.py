@@ -291,7 +291,7 @@ class StatesModelError(OfChosenPhysics):
     counted: ClassVar[str] = ""
 
     def without_waiting(self) -> Any:
-        """Return a result that can be shown at once: slow model errors not computed yet are omitted."""
+        """Return the result for immediate display: a model error that would take long is then omitted."""
         if not self.judged_by_solving or "left_out_effects" in vars(self):
             return self
         shape = np.shape(getattr(self, "left_out_speeds", 0.0))

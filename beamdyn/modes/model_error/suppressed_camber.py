@@ -40,7 +40,7 @@ def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
     wide = np.minimum(theta, _WIDEST)
     total, rate = np.sinh(wide) + np.sin(wide), np.cosh(wide) + np.cos(wide)
     h, e = (np.cosh(wide) - np.cos(wide)) / total, rate / total
-    first = 1 - h * e  # first and, in the next line, second derivative of h by theta
+    first = 1 - h * e  # dh/dtheta; the next line is the second derivative
     second = -first * e - h * ((np.sinh(wide) - np.sin(wide)) / total - e**2)
     tangent = 5 / 4 * first + wide / 4 * second + 3 / 4 * h / theta
     return (1 - nu**2 * tangent) / (1 - nu**2)
