@@ -249,7 +249,7 @@ class Columns:
     *columns : Column
         The columns.
     title, note : str
-        Title of their table, and the sentences below it, a line each.
+        Title of the table, and the text below it, one sentence per line.
     """
 
     def __init__(self, *columns: Column, title: str = "", note: str = "") -> None:
