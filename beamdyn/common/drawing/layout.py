@@ -185,7 +185,7 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """Make the layout of a drawing from given places of its labels."""
+    """Make a layout from the places of a drawing's labels; `held` is a transformation that must stay."""
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -265,7 +265,7 @@ def _with_list(
 def _make_room(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[list[int], float, Fit, Sequence[Place | None]]:
-    """Shrink the drawing until a list of the labels without a free place fits below it.
+    """Shrink the drawing, unless `held` is given, until a list of labels without a place fits below it.
 
     In the smaller drawing more labels may lack a free place: the steps are repeated until all such labels
     are listed.  Returns the indices of these labels, the top of the list [pt], the scale, and all places.

@@ -134,7 +134,7 @@ _FEW = 40  # largest number of values of an input for which the points of a curv
 # The hatched region without results ends where the smoothed fraction of missing results is 1/2: standard
 # deviation [grid steps] of the smoothing Gaussian; least distance of the fraction from 1/2 at grid points.
 _SMOOTHED, _APART = 1.0, 0.02
-_SAME = 1e-9  # relative difference of values due to rounding: no contour lines are drawn between them
+_SAME = 1e-9  # relative range of the values below which they count as equal: no contour lines are drawn
 # Fraction of the smallest, and of the largest, values that do not influence the contour levels.
 _RARE = 0.04
 _LETTERS = 10.0  # characters of a title that fit into an inch

@@ -1,9 +1,9 @@
 """Statistics of the results of random designs, with their standard errors.
 
 The samples are divided into blocks of points that are scrambled independently, so that the scatter of the
-block means gives the error of the mean.  This needs no assumption on the results, and includes the gain of
-evenly distributed points.  A statistic is a mean or a ratio of means over blocks; its error follows by
-linearization.
+block means gives the error of the mean.  This needs no assumption on the results, and accounts for the lesser
+scatter of evenly distributed points.  A statistic is a mean or a ratio of means over blocks; its error
+follows by linearization.
 
 The designs are: random designs for statistics, the nominal design, and neighbouring designs for derivatives.
 
