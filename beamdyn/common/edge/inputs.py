@@ -43,7 +43,7 @@ class Section(BaseModel):
         return (_empty_section, (type(self).__module__, known), self.__getstate__())
 
 
-# Class of each table, by name and keys; if classes are equal, only the first one is kept.
+# Python class of each table, by module, name and keys; of classes that agree in these, the first is stored.
 _SECTIONS: dict[str, type[Section]] = {}
 
 

@@ -17,7 +17,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.described import Designs, VariedInput
 from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
 
-# Tolerances ----------------------------------------------------------------------------------------
+# Varied inputs -------------------------------------------------------------------------------------
 
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
