@@ -213,7 +213,7 @@ def _coordinates(text: str, entry: Input) -> Sequence[str]:
 def _number(value: float, text: str, unit: str, grain: float) -> str:
     """Return a quantity in the unit of the old text, rounded to the increment `grain`.
 
-    If the old text agrees within rounding, it is returned.
+    If the old text differs from the value by half an increment or less, it is returned.
     """
     grain = grain if unit == "m" else _ANGLE
     try:

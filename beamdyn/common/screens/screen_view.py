@@ -52,14 +52,14 @@ _DRAWN_FIRST = 0.03  # time after which charts follow a drawing that the slider 
 
 
 class ScreenView:
-    """The view of one screen of an open document.
+    """The view of one screen of an open input file.
 
     Parameters
     ----------
     work : OpenDocument
-        The document.
+        The open input file, with its results.
     screen : Screen
-        The screen of the document to show.
+        The screen to show.
     edited : callable
         Called after a field of this screen has changed.
     open_file : callable
