@@ -1,4 +1,8 @@
-"""Reading of measured time histories, peaks, loads along the span, responses and mode shapes."""
+"""Reading of measured time histories, peaks, loads along the span, responses and mode shapes.
+
+In functions that read a text, `half` computes the rounding error of a number as written (see `Half`), and
+`speed` is the rotational speed [rad/s] that the user has given, or None.
+"""
 
 from __future__ import annotations
 

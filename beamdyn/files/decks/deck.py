@@ -117,7 +117,7 @@ class Deck(Result):
             comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
         if self.blade.matrices is not None:
             comments["beam"] = [
-                "rows and columns of the matrices: 1 along the axis, 2 against flap, 3 across"
+                "rows and columns of the matrices: 1 along the axis, 2 upwind (flap), 3 across (edge)"
             ]
             comments["beam"] += ["K11 to K66 are stiffnesses, M11 to M66 masses, about the axis of the blade"]
         elif self.scene.physics.torsion:
