@@ -219,7 +219,7 @@ def _with_error(value: float, error: float) -> str:
 
 
 def told_from(value: float, limit: float) -> str:
-    """Format a number with two digits, or with the more digits that distinguish it from a limit."""
+    """Format a number with two digits, or with more if these are needed to distinguish it from a limit."""
     texts = (f"{value:.{digits}g}" for digits in range(2, 18))
     return next((text for text in texts if float(text) != limit), f"{value:g}")
 

@@ -221,7 +221,7 @@ def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]
 
 
 def _plain_unit(unit: str) -> float:
-    """Return the unit of a plain number, such as strain: "", "-" or a positive number; else a ValueError."""
+    """Return the unit, "", "-" or a positive number, of a dimensionless quantity; else raise a ValueError."""
     size = 1.0 if unit in ("", "-") else float(unit)
     if not 0 < size < math.inf:
         raise ValueError(unit)

@@ -319,8 +319,7 @@ def _to_fractions(given: Any, length: float) -> Any:
     if isinstance(given, Table):
         return Table(_to_fractions(given.stations, length), given.values)
     if isinstance(given, list | tuple):
-        # Rounded: otherwise 20 mm of 50 mm would differ from the fraction 0.4 by a rounding error, and there
-        # would be a tiny interval between them.
+        # Rounded, so that 20 mm of 50 mm equals the fraction 0.4, without a tiny interval between the two.
         return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
 

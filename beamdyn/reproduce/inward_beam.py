@@ -98,7 +98,7 @@ def first_frequencies() -> Iterator[Comparison]:
 def limits_of_setting_angle() -> Iterator[Comparison]:
     """Compare with Section 3.3: the two setting-angle limits [deg].
 
-    The second limit is given for bases of N eigenfunctions without a top speed, then converged, by top speed.
+    Rows of the second limit: for N eigenfunctions without a top speed; then converged, for some top speeds.
     """
     printed, scene = VALUES["setting_angle_limits"], inward_scene()
     for name, method in _METHODS:
@@ -290,7 +290,7 @@ def sections(fig_6_sweep: bd.Sweep) -> dict[str, list[Comparison]]:
 
 
 def passage() -> tuple[float, float]:
-    """Find the time [s] at which the spin-up passes the first resonance, and its speed [rad/s]."""
+    """Find the time [s] at which the spin-up passes the first resonance, and the speed [rad/s] then."""
     motion = rolling_scene().motion
     assert motion is not None
     first = next(c.speed for c in crossings() if c.kind == "forced")

@@ -251,7 +251,7 @@ class VaryOptions:
     together : bool
         Take the first values of all inputs, then the second, in place of all combinations.
     workers : int
-        Number of processes; the answer is the same for any.
+        Number of processes; the result does not depend on it.
     store : Path, optional
         Folder in which finished designs are kept; the same command resumes from it.
     """

@@ -199,7 +199,7 @@ def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue
     Returns
     -------
     dict
-        The values that the file has, by plain name.
+        The values that the file has, by names as `plain_name` returns them.
 
     Raises
     ------
@@ -229,9 +229,9 @@ def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapp
     text : DataText
         The file.
     found : mapping
-        Values of the file, by plain name.
+        Values of the file, by names as `plain_name` returns them.
     names : mapping
-        Required names as shown in messages, by plain name.
+        Required names as shown in messages, by names as `plain_name` returns them.
 
     Raises
     ------

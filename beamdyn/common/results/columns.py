@@ -311,7 +311,7 @@ class Meaning:
     Parameters
     ----------
     unit : str
-        SI unit; "" for a plain number.
+        SI unit; "" for a dimensionless number.
     words : str
         Meaning of the number: a phrase without a full stop.
     shown : str

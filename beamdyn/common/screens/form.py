@@ -60,7 +60,7 @@ class Form:
         self._units: dict[str, str] = {}  # units of numbers typed without a unit, by path of the input
         self._tables: dict[str, Any] = {}
         self._places: dict[str, Any] = {}  # elements around the fields, by path of the input
-        self._rest: dict[str, Any] = {}  # foldable parts of tables, by path
+        self._rest: dict[str, Any] = {}  # foldable parts of tables, by path of the inputs in them
         self._drags = {drag.path: drag for drag in screen.drags}
         for section in screen.sections:
             chosen = [entry for entry in inputs if form_entries.table_of(entry.path) == section]

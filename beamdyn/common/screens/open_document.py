@@ -295,7 +295,7 @@ class OpenDocument:
         return ShownAnswer(answer, shown, notes, entries, headline, perf_counter() - start)
 
     def keep(self, screen: Screen, outcome: Outcome) -> bool:
-        """Store a new result; or keep the last one, and store the errors that prevent a new one."""
+        """Store a new result, or else the errors beside the last result; return whether one is new."""
         found = isinstance(outcome, ShownAnswer)
         if found:
             self.answered[screen.name] = outcome

@@ -33,9 +33,8 @@ if TYPE_CHECKING:
 BLOCKS = 16
 LEAST, MOST = 128, 2**17  # allowed numbers of samples: fewer give blocks too small for errors
 MOST_SEED = 2**63
-# Largest step for derivatives, as a fraction of the distance to an end of the tolerance: so large that
-# rounding is negligible, so small that results are nearly linear.
-_STEP = 1 / 8
+# Large enough for negligible rounding errors, and small enough for nearly linear results.
+_STEP = 1 / 8  # largest step for derivatives, as a fraction of the distance to an end of the tolerance
 _ONE_SIDED, _BOTH_SIDES = np.array([0.25, 0.5, 0.75, 1.0]), np.array([-1.0, -0.5, 0.5, 1.0])
 
 

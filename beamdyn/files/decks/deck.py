@@ -215,8 +215,7 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
 
 
 _BOTH = ("length", "hub_radius")
-# Functions that read files; for each, the names that identify the files, where to find missing data, and what
-# data the files lack.
+# For each kind of file: reading function, identifying names, where to find the data that it lacks, their names.
 _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
     (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
     (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),
