@@ -215,7 +215,7 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
 
 
 _BOTH = ("length", "hub_radius")
-# For each kind of file: reading function, identifying names, where to find the data that it lacks, their names.
+# For each kind of file: reading function, identifying names, where to find data that it lacks, their names.
 _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
     (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
     (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),
