@@ -169,7 +169,7 @@ class _BeamInput(CoreSection):
         list[list[Any]] | None,
         Field(
             description="table of the sections: a row of headings such as x/L and twist [deg], then numbers, "
-            "a row a station; linear between stations, one given twice is a jump; or the name of a CSV file"
+            "one row per station; linear between stations; a jump at one given twice; or name of a CSV file"
         ),
     ] = None
     twist: Annotated[
@@ -283,7 +283,7 @@ class MatricesInput(_BeamInput):
         Field(
             description="table of the 6 x 6 matrices of the sections: a row of headings, x/L and entries of "
             "the upper triangles, K11 [N] to K66 [N m2] of stiffness and M11 [kg/m] to M66 [kg m] of mass, "
-            "then numbers, a row a station; linear between stations; entries that are not given are 0"
+            "then one row of numbers per station; linear between stations; entries that are not given are 0"
         ),
     ]
 

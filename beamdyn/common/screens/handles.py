@@ -123,7 +123,7 @@ def draw_sheet(
     view : Viewport, optional
         Viewport to keep, so that the picture does not shift while a handle moves.
     other : sequence of sequences of Drawing
-        Drawings of another design, which are drawn behind.
+        Drawings of another design, which are drawn behind those of the result.
     name : str
         Name of the other design.
     narrow : bool
