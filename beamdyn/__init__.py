@@ -1,6 +1,6 @@
 """Vibration of a cantilever on a carrier that rotates and translates.
 
-The public face; names load their modules when first used, so that importing the package is quick.
+This module has the public names; each loads its module when first used, so that the import is quick.
 """
 
 from __future__ import annotations

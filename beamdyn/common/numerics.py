@@ -15,18 +15,18 @@ from scipy.linalg.blas import dtrsm
 
 
 def solve_lower(L: np.ndarray, B: np.ndarray) -> np.ndarray:
-    """Solve L X = B for lower triangular L, shape (n, n), and several columns B."""
+    """Solve L X = B for lower triangular L, shape (n, n), and right-hand sides B, shape (n, m)."""
     # The transpose is stored by columns, as LAPACK needs it, so that no copy is made.
     return dtrsm(1.0, L.T, B, lower=0, trans_a=1)
 
 
 def solve_lower_transposed(L: np.ndarray, B: np.ndarray) -> np.ndarray:
-    """Solve L^T X = B for lower triangular L, shape (n, n), and several columns B."""
+    """Solve L^T X = B for lower triangular L, shape (n, n), and right-hand sides B, shape (n, m)."""
     return dtrsm(1.0, L.T, B, lower=0)
 
 
 def assign(cost: np.ndarray) -> np.ndarray:
-    """Assign a different column to each of the n rows of a cost matrix (n, m), n <= m, at the least cost."""
+    """Return a different column index for each row of a cost matrix (n, m), n <= m, at least total cost."""
     least = cost.argmin(axis=1)
     if np.isfinite(cost).all() and len(np.unique(least)) == len(least):
         return least  # the cheapest columns of the rows are all different
@@ -62,7 +62,7 @@ def legendre_values(points: int, degree: int) -> np.ndarray:
 def legendre_series(points: int) -> np.ndarray:
     """Return the matrix that converts values at Gauss points to Legendre coefficients of the interpolant."""
     values, scale = legendre_values(points, points - 1), np.arange(points) + 0.5
-    # Gauss weights as sums of squares (Christoffel): those of numpy have relative errors up to 1e-12.
+    # Gauss weights by Christoffel's formula (reciprocal sums of squares): numpy's have errors up to 1e-12.
     return scale[:, None] * values.T / (values**2 @ scale)
 
 
@@ -72,9 +72,9 @@ def longer_semi_axis(c: np.ndarray) -> np.ndarray:
 
 
 def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Multiply two Legendre series with m and n coefficients, in columns: the product has m + n - 1.
+    """Multiply Legendre series a and b column by column; m and n coefficients give a product with m + n - 1.
 
-    The Gauss rule with as many points as the product has coefficients determines it from the values there.
+    The product follows from its values at as many Gauss points as it has coefficients.
     """
     if min(len(a), len(b)) == 1:  # one of the two series is constant
         return a * b
@@ -84,7 +84,7 @@ def multiply_series(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def integrate_series(series: np.ndarray) -> np.ndarray:
-    """Integrate Legendre series from 1 to t; coefficients in columns, one more in the integral.
+    """Integrate Legendre series, one per column, from 1 to t; the integrals have one more coefficient.
 
     The derivative of P_{k+1} - P_{k-1} is (2k + 1) P_k.
     """

@@ -91,7 +91,7 @@ class Named(Part):
 
 
 class Setting(Named):
-    """Keys of a table in a scene file, and their values: "[physics] shear = true", `Physics(shear=True)`.
+    """Settings: "[physics] shear = true" in a scene file, the call `Physics(shear=True)` in Python.
 
     Parameters
     ----------
@@ -165,8 +165,9 @@ def supported(value: float, error: float, most: int = _MOST_DIGITS) -> str:
     Returns
     -------
     str
-        The rounded number; "0 ± error" if the error is at least half the number, "number ± error" if no digit
-        is certain for another reason, "unresolved" if the error is unknown.
+        The rounded number; "0 ± bound" if the error is at least half the number's magnitude, where the bound
+        is their sum; "number ± error" if the error is smaller, but the first digit is uncertain; "unresolved"
+        if the error is not finite; "none" if the number is nan.
     """
     if not math.isfinite(value):
         return "none" if math.isnan(value) else str(value)
@@ -218,7 +219,7 @@ def _with_error(value: float, error: float) -> str:
 
 
 def told_from(value: float, limit: float) -> str:
-    """Format a number with two digits, or with as many as are needed to distinguish it from a limit."""
+    """Format a number with two digits, or with more if these are needed to distinguish it from a limit."""
     texts = (f"{value:.{digits}g}" for digits in range(2, 18))
     return next((text for text in texts if float(text) != limit), f"{value:g}")
 

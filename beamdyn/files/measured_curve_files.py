@@ -1,4 +1,8 @@
-"""Reading of measured time histories, peaks, loads along the span, responses and mode shapes."""
+"""Reading of measured time histories, peaks, loads along the span, responses and mode shapes.
+
+In functions that read a text, `half` computes the rounding error of a number as written (see `Half`), and
+`speed` is the rotational speed [rad/s] that the user has given, or None.
+"""
 
 from __future__ import annotations
 
@@ -217,7 +221,7 @@ def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]
 
 
 def _plain_unit(unit: str) -> float:
-    """Return the unit of a plain number, such as strain: "", "-" or a positive number; else a ValueError."""
+    """Return the unit, "", "-" or a positive number, of a dimensionless quantity; else raise a ValueError."""
     size = 1.0 if unit in ("", "-") else float(unit)
     if not 0 < size < math.inf:
         raise ValueError(unit)

@@ -36,7 +36,7 @@ class Metres(float):
 
 
 class Position(Quantity):
-    """A position along the beam: a plain number is the fraction x/L; a length has a unit."""
+    """A position along the beam: the fraction x/L as a number without a unit, or a length with a unit."""
 
     def convert(self, given: object) -> float:
         """Convert to a fraction x/L, or to `Metres` if the position is a length."""
@@ -93,9 +93,6 @@ def _kind_of_variation(given: Any) -> str | None:
         return None if isinstance(given, list) else "<constant>"
     kinds = {"<polynomial>": {"polynomial"}, "<table>": {"stations", "values"}}
     return next((kind for kind, keys in kinds.items() if keys & given.keys()), None)
-
-
-# Motions, physics and points ----------------------------------------------------------------------
 
 
 # Tables of a scene file -----------------------------------------------------------------------------
@@ -172,7 +169,7 @@ class _BeamInput(CoreSection):
         list[list[Any]] | None,
         Field(
             description="table of the sections: a row of headings such as x/L and twist [deg], then numbers, "
-            "a row a station; linear between stations, one given twice is a jump; or the name of a CSV file"
+            "one row per station; linear between stations; a jump at one given twice; or name of a CSV file"
         ),
     ] = None
     twist: Annotated[
@@ -181,13 +178,11 @@ class _BeamInput(CoreSection):
     ] = None
     sweep: Annotated[
         Along | None,
-        Varying("rad", "Lambda", "angle by which the axis leaves its direction at the root, towards across"),
+        Varying("rad", "Lambda", "angle of the axis to its direction at the root, in the direction across"),
     ] = None
     prebend: Annotated[
         Along | None,
-        Varying(
-            "rad", "beta", "angle by which the axis leaves its direction at the root, in that of bending"
-        ),
+        Varying("rad", "beta", "angle of the axis to its direction at the root, in the direction of bending"),
     ] = None
     point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
     point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012
@@ -250,7 +245,7 @@ class StiffnessInput(_BeamInput):
     ] = None
     second_shear_stiffness: Annotated[
         Along | None,
-        Varying("N", "kappa G A2", "shear stiffness in the direction across; else as the first", above=0),
+        Varying("N", "kappa G A2", "shear stiffness across; the first one if not given", above=0),
     ] = None
     rotary_inertia: Annotated[
         Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
@@ -262,15 +257,15 @@ class StiffnessInput(_BeamInput):
         Along | None, Varying("N m2", "G J", "stiffness against torsion", above=0)
     ] = None
     warping_stiffness: Annotated[
-        Along | None, Varying("N m4", "E Cw", "stiffness against warping, which the root holds", above=0)
+        Along | None, Varying("N m4", "E Cw", "warping stiffness; the root then cannot warp", above=0)
     ] = None
     mass_offset: Annotated[
         Along | None,
-        Varying("m", "c", "centre of mass beside the shear centre, in the direction across, for torsion"),
+        Varying("m", "c", "offset of the mass centre from the shear centre, across, for torsion"),
     ] = None
     tension_offset: Annotated[
         Along | None,
-        Varying("m", "t", "centre of tension beside the shear centre, likewise; stiffnesses are about it"),
+        Varying("m", "t", "offset of the tension centre, likewise; bending stiffnesses are about it"),
     ] = None
 
     @cached_property
@@ -288,7 +283,7 @@ class MatricesInput(_BeamInput):
         Field(
             description="table of the 6 x 6 matrices of the sections: a row of headings, x/L and entries of "
             "the upper triangles, K11 [N] to K66 [N m2] of stiffness and M11 [kg/m] to M66 [kg m] of mass, "
-            "then numbers, a row a station; linear between stations; entries that are not given are 0"
+            "then one row of numbers per station; linear between stations; entries that are not given are 0"
         ),
     ]
 
@@ -324,8 +319,7 @@ def _to_fractions(given: Any, length: float) -> Any:
     if isinstance(given, Table):
         return Table(_to_fractions(given.stations, length), given.values)
     if isinstance(given, list | tuple):
-        # Rounded: otherwise 20 mm of 50 mm would differ from the fraction 0.4 by a rounding error, and there
-        # would be a tiny interval between them.
+        # Rounded, so that 20 mm of 50 mm equals the fraction 0.4, without a tiny interval between the two.
         return tuple(round(x / length, 14) if isinstance(x, Metres) else x for x in given)
     return given
 

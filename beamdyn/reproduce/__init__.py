@@ -1,4 +1,4 @@
-"""Reproduction of published numbers: each is printed beside our result, with deviation and verdict."""
+"""Reproduction of published numbers: each beside the number computed here, and whether the two agree."""
 
 from __future__ import annotations
 

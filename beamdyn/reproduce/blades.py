@@ -71,7 +71,7 @@ def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
 
 
 def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[str, PrintedValue]]:
-    """Compare published frequencies [Hz], under a key of the data, with ours; yield blade and comparison."""
+    """Compare published frequencies [Hz], by their key in the data, with computed ones; name the blade."""
     for row in load("blades")["blade"]:
         if printed := row.get(key):
             whole = key == "frequency_printed_by_bmodes"
@@ -83,14 +83,14 @@ def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[st
 
 
 def entries_of_blades(discretization: str) -> Iterator[tuple[str, PrintedValue]]:
-    """Compare published frequencies [Hz] of all blades with ours; yield the blade's name and comparison."""
+    """Compare published frequencies [Hz] of all blades with computed ones; yield blade title, comparison."""
     for key in ("frequency", "frequency_without_twist"):
         for name, entry in _compare_blades(key, discretization):
             yield stations(name)["title"], entry
 
 
 def printed_by_bmodes() -> Iterator[Comparison]:
-    """Compare our frequencies [Hz] of BModes' test blade with those that BModes prints."""
+    """Compare the frequencies [Hz] computed for BModes' test blade with those that BModes prints."""
     for _, entry in _compare_blades("frequency_printed_by_bmodes"):
         what, decimals = f"{entry.where}, mode {entry.mode}", len(entry.printed.partition(".")[2])
         numbers = float(entry.printed), entry.ours, entry.error, decimals
@@ -98,5 +98,5 @@ def printed_by_bmodes() -> Iterator[Comparison]:
 
 
 def notes() -> list[str]:
-    """Return notes on the printed frequencies, numbered after those of the first paper."""
+    """Return notes on the printed frequencies; their numbers continue those of Lee and Yoo's notes."""
     return load("blades")["notes"]

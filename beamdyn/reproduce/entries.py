@@ -1,4 +1,4 @@
-"""Printed values compared with ours, errata with their proofs, and summaries by source."""
+"""Printed values compared with those of this package, errata with their proofs, and summaries by source."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from beamdyn.common.words import supported
 
 @dataclass(frozen=True)
 class PrintedValue:
-    """A printed value and our value; for misprints also a value by a third computation.
+    """A printed value and this package's value; for misprints also a value by an independent method.
 
     Parameters
     ----------
@@ -22,11 +22,11 @@ class PrintedValue:
     printed : str
         The printed value with all its digits.
     ours, error : float
-        Our value and its estimated absolute error.
+        Value computed by this package, and its estimated absolute error.
     exact : str
-        For a misprint, the value by a method independent of ours; else empty.
+        For a misprint, the value by a method that is independent of this package; else empty.
     bounds : tuple of float, optional
-        For a misprint, guaranteed lower and upper bounds, where the theorem covers the scene.
+        For a misprint, guaranteed lower and upper bounds, for scenes that have such bounds.
     """
 
     where: str
@@ -44,17 +44,17 @@ class PrintedValue:
 
     @property
     def in_print(self) -> bool:
-        """Whether our value rounds to the printed digits, regardless of our error."""
+        """Whether the computed value rounds to the printed digits, regardless of its error."""
         return abs(self.ours - float(self.printed)) <= self.rounding
 
     @property
     def agrees(self) -> bool:
-        """Whether our value differs from the printed value by at most rounding plus our error."""
+        """Whether the computed value differs from the printed one by at most rounding plus its error."""
         return abs(self.ours - float(self.printed)) <= self.rounding + self.error
 
     @property
     def is_erratum(self) -> bool:
-        """Whether a misprint is proven: our value equals `exact`, and bounds exclude the printed value."""
+        """Whether a misprint is proven: `ours` is `exact` within errors, and bounds exclude `printed`."""
         if not self.exact:
             return False
         printed, exact, slack = float(self.printed), float(self.exact), half_unit(self.exact)
@@ -66,17 +66,17 @@ class PrintedValue:
 
     @property
     def off_by(self) -> float:
-        """Deviation of the printed value from `exact`, or else from ours, in units of the last digit."""
+        """Deviation of the printed value from `exact`, or else from `ours`, in units of its last digit."""
         return (float(self.printed) - float(self.exact or self.ours)) / (2 * self.rounding)
 
     @property
     def as_expected(self) -> bool:
-        """Whether the printed value and ours agree, or a claimed misprint is proven."""
+        """Whether the printed and the computed value agree, or a claimed misprint is proven."""
         return self.is_erratum if self.exact else self.agrees
 
     @property
     def relative_deviation(self) -> float:
-        """Deviation of our value from the printed value, relative to the latter."""
+        """Magnitude of the deviation of `ours` from the printed value, relative to the printed value."""
         return abs(self.ours / float(self.printed) - 1)
 
     def cells(self) -> list[str]:
@@ -98,7 +98,7 @@ def half_unit(text: str) -> float:
 def compare_modes(
     where: str, printed: Iterable[object], ours: Iterable[float], errors: Iterable[float]
 ) -> list[PrintedValue]:
-    """Compare a row's printed values, one for each mode, with ours, given relative errors of ours."""
+    """Compare a row's printed values, one for each mode, with computed ones, which have relative errors."""
     rows = enumerate(zip(map(str, printed), map(float, ours), map(float, errors), strict=False), 1)
     return [PrintedValue(where, mode, text, value, error * abs(value)) for mode, (text, value, error) in rows]
 
@@ -110,20 +110,20 @@ class Summary:
     Parameters
     ----------
     source, discretization : str
-        Source of the values, and discretization of ours.
+        Source of the printed values, and discretization of the computed ones.
     values : int
         Number of values.
     printed : float
         Largest relative rounding of the printed values: half a unit of the last digit.
     deviation, error : float
-        Largest relative deviation, without errata, and largest estimated relative error.
+        Largest relative deviation, without errata, and largest estimated relative error of computed values.
     outside : int
         Number of values that deviate by more than rounding and error together, and are no proven errata.
     errata, last_digits : int
         Number of values that are proven to be wrong in print, and number of these that are wrong in the last
         digit only, by less than one unit.
     in_print : bool
-        Whether all other values agree in all printed digits, whatever our error.
+        Whether all other values agree in all printed digits, regardless of errors.
     """
 
     source: str
@@ -139,7 +139,7 @@ class Summary:
 
     @property
     def as_expected(self) -> bool:
-        """Whether all printed values agree with ours, or are proven misprints."""
+        """Whether all printed values agree with the computed ones, or are proven misprints."""
         return not self.outside
 
     @property

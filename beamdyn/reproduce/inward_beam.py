@@ -1,4 +1,4 @@
-"""The inward beam of Lee and Yoo (2019): all numbers of the paper beside ours, with notes on differences.
+"""The inward beam of Lee and Yoo (2019): all its numbers beside computed ones, with notes on differences.
 
 The paper's equations are linear about the straight beam. Its numbers stand beside those of the linear model
 and of an inextensible beam that bends by any angle.
@@ -32,13 +32,13 @@ MM = 1e3  # millimetres in a metre
 
 # Names of the sources of values; numbers in parentheses refer to notes.
 _PAPER, _ANSYS, _RECURDYN, _OWN = "paper", "ANSYS (4)", "RecurDyn (4)", "independent (5)"
-_BENDS = "large deflection (9)"  # reason why large deflection changes the paper's value
+_BENDS = "large deflection (9)"  # reason of differences due to large deflection, which the paper neglects
 _METHODS = (("Ritz", "ritz"), ("FE", "fem"))
 _MODELS = (("Ritz", "ritz", "bending"), ("FE", "fem", "bending"), ("with stretch", "ritz", "stretch"))
 _MODES = 5  # number of modes of the published simulation
 _FIGURE_6 = np.linspace(0, TOP, 151)  # speeds of Fig. 6 [rad/s]
 _DAMPING = 0.01  # damping ratio with which free vibration decays before 20 s
-_ROUNDING = 1e-12  # relative error of a value that is exact for a given number of functions
+_ROUNDING = 1e-12  # relative error, by rounding, of a limit that is defined for a given number of modes
 _JUDGED = (100.0, 400.0)  # speeds at which Fig. 8 and 9 are checked [rad/s]: one of Table 2, and a higher one
 
 
@@ -60,7 +60,7 @@ def rolling_scene(**physics: Any) -> bd.Scene:
 
 
 def _compare(what: str, ours: Iterable[Any], *known: tuple) -> Iterator[Comparison]:
-    """Compare our value and error with known values: source, value, and optionally decimals and a reason.
+    """Compare a value and its error with `known`: source, value, and optionally decimals, expected reason.
 
     By default the decimals are those with which Python prints the value.
     """
@@ -81,7 +81,7 @@ def _first_frequency(scene: bd.Scene, speed: float, discretization: str = "ritz"
 
 
 def first_frequencies() -> Iterator[Comparison]:
-    """Compare the first frequency at three speeds, by three models of ours, with Table 2 of the paper."""
+    """Compare first frequencies [Hz] by Ritz, by FE and with stretch, at three speeds, with Table 2."""
     for row, exact in zip(PAPER["first_frequency"], KNOWN["first_frequency"], strict=True):
         speed, proposed, ansys = (row[name]["value"] for name in ("speed", "proposed", "ansys"))
         decimals = row["proposed"]["decimals"], row["ansys"]["decimals"]
@@ -98,7 +98,7 @@ def first_frequencies() -> Iterator[Comparison]:
 def limits_of_setting_angle() -> Iterator[Comparison]:
     """Compare with Section 3.3: the two setting-angle limits [deg].
 
-    The second limit is given for bases of N eigenfunctions without a top speed, then converged, by top speed.
+    Rows of the second limit: for N eigenfunctions without a top speed; then converged, for some top speeds.
     """
     printed, scene = VALUES["setting_angle_limits"], inward_scene()
     for name, method in _METHODS:
@@ -120,7 +120,7 @@ def limits_of_setting_angle() -> Iterator[Comparison]:
 
 
 def buckling_speed() -> Iterator[Comparison]:
-    """Compare the inward beam's buckling speed with our own reference, as the paper prints none."""
+    """Compare the buckling speed [rad/s] with an independent reference, as the paper prints none."""
     for name, method in _METHODS:
         point = bd.critical_point(inward_scene(), method)
         ours = point.speed, point.error * point.speed
@@ -226,7 +226,7 @@ def sweep_peak_comparisons(result: bd.Sweep) -> Iterator[Comparison]:
 
 
 def first_frequencies_of_bent_beam() -> Iterator[Comparison]:
-    """Compare first frequencies [Hz] with large deflection and linear ones, at the angles of Fig. 8 and 9."""
+    """Compare the first frequencies [Hz] with large deflection with linear ones, for Fig. 8 and 9."""
     rows: list[tuple[float, float, Any]] = [
         (figure["setting_angle"][1], speed, None)
         for figure in (PAPER["figures"]["fig_8"], PAPER["figures"]["fig_9"])
@@ -241,7 +241,7 @@ def first_frequencies_of_bent_beam() -> Iterator[Comparison]:
 
 
 def limits_of_bent_beam() -> Iterator[Comparison]:
-    """Compare with Section 3.3: the setting-angle limits [deg] of a beam that bends."""
+    """Compare with Section 3.3: the setting-angle limits [deg] with large deflection."""
     printed = VALUES["setting_angle_limits"]
     yield from _compare("first limit, at rest", _bent_limit(0.0), (_PAPER, printed["first"], 2))
     second = _PAPER, printed["second"], 2, _BENDS
@@ -290,7 +290,7 @@ def sections(fig_6_sweep: bd.Sweep) -> dict[str, list[Comparison]]:
 
 
 def passage() -> tuple[float, float]:
-    """Find the time [s] at which the spin-up passes the first resonance, and its speed [rad/s]."""
+    """Find the time [s] at which the spin-up passes the first resonance, and the speed [rad/s] then."""
     motion = rolling_scene().motion
     assert motion is not None
     first = next(c.speed for c in crossings() if c.kind == "forced")
@@ -299,7 +299,7 @@ def passage() -> tuple[float, float]:
 
 
 def notes() -> list[str]:
-    """Return notes on the tables, in the order of their numbers."""
+    """Return the notes on the tables, ordered by their numbers (1), (2) and so on."""
     (time, line), (peak, _) = passage(), _peak(run())
     steady = MM * float(bd.steady_response(rolling_scene(), [SPEED], _MODES).amplitude[0])
     angle, bends = VALUES["setting_angle_limits"]["first"][1], {"large_deflection": True}

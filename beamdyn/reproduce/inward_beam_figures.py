@@ -1,4 +1,4 @@
-"""Figures 4 to 9 of Lee and Yoo (2019), drawn from our numbers."""
+"""Figures 4 to 9 of Lee and Yoo (2019), drawn from numbers that this package computes."""
 
 from __future__ import annotations
 

@@ -76,8 +76,8 @@ def cases(paper: str) -> Iterator[dict[str, Any]]:
     """Yield the cases of a paper's tables: one for each row, with the data that rows of a table share.
 
     Besides the keys of ``rotating_beams.toml``, cases have ``where``, which names the row, ``factor`` of the
-    printed values over the nondimensional ones, and ``exact``, values by a third computation by the number of
-    the mode. Mass and stiffness are those of a linearly tapering rectangular section, unless they are given.
+    printed values over the nondimensional ones, and ``exact``, values by an independent method by mode
+    number. Mass and stiffness are those of a linearly tapering rectangular section, unless they are given.
     """
     for printed in load(paper).get("table", []):
         shared = {"factor": 1.0} | {key: value for key, value in printed.items() if key != "rows"}
@@ -98,9 +98,9 @@ def beams() -> dict[str, str]:
 
 
 def entries_of_case(case: Mapping[str, Any], discretization: str) -> Iterator[PrintedValue]:
-    """Compare the printed values of a case with ours.
+    """Compare the printed values of a case with computed ones.
 
-    An erratum also has guaranteed bounds, except with stretch, which their theorem does not cover.
+    An erratum also has guaranteed bounds, except with stretch, for which there are none.
     """
     scene, printed, factor = nondimensional_scene(case), case["frequency"], case["factor"]
     modes = bd.natural_modes(scene, case["gamma"], len(printed), discretization)
@@ -151,7 +151,7 @@ def tip_stretch(beam: bd.Beam, speed: float, discretization: Discretization) -> 
 
 @cache
 def reference_entries(discretization: str) -> Entries:
-    """Compare the tables of rotating beams, their critical speeds, and twisted and stocky beams with ours."""
+    """Compare tables of rotating, twisted and stocky beams, and critical speeds, with computed values."""
     data = load("rotating_beams")
     critical = [case | {"source": "critical speeds, computed"} for case in data["critical"]]
     known = [*data["case"], *(case for case in critical if np.isfinite(case["gamma"]))]
@@ -163,7 +163,7 @@ def reference_entries(discretization: str) -> Entries:
 
 
 def entries_of_reference(case: Mapping[str, Any], discretization: str) -> list[PrintedValue]:
-    """Compare the values of a case of ``rotating_beams.toml`` or ``twisted_beams.toml`` with ours."""
+    """Compare values of a case of ``rotating_beams.toml`` or ``twisted_beams.toml`` with computed ones."""
     scene = twisted_scene(case) if "planes" in case else nondimensional_scene(case)
     if "frequency" not in case:
         point = bd.critical_point(scene, discretization)
@@ -226,8 +226,8 @@ def errata_table(errata: Errata) -> Group:
     """Build the table of errata with their proofs."""
     heads = ("source", "at", "mode", "printed", "ours, Ritz", "power series", "bounds", "off by")
     title = (
-        "Errata: ours, a third method, the relative width of guaranteed bounds that exclude the print, and\n"
-        "by how many units of its last digit the print is off (less than one: cut off or rounded twice)"
+        "Errata: ours, an independent method, relative width of guaranteed bounds that exclude the print,\n"
+        "and by how many units of its last digit the print is off (less than one: cut off or rounded twice)"
     )
     return table(title, heads, ([source, *entry.cells()] for source, entry in errata), (0, 1))
 
@@ -243,6 +243,6 @@ def sources() -> Iterator[str]:
     for name in BLADES:
         yield f"  {stations(name)['title']}: {stations(name)['source']}"
     yield (
-        "The third values of errata are those of a power-series determinant in 30 digits; "
-        "tests/literature/test_printed_tables.py computes them anew."
+        'The values "power series" of errata are by an independent method: zeros of the determinant of the '
+        "tip's boundary conditions; tests/literature/test_printed_tables.py computes them anew in 20 digits."
     )

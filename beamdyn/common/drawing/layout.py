@@ -28,8 +28,7 @@ _BAR = 0.22  # length of the longest scale bar, as a fraction of the frame's wid
 _SMALL_DISC = 30.0  # largest radius of a disc whose label stands beside the disc, not on it [pt]
 # Points, relative to a movable point, that labels must not cover: the page shows a handle of 16 px there.
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
-# Points relative to a ground symbol that labels must not cover; unit: half the symbol's width, and its
-# height.
+# Points of a ground symbol that labels must not cover, in units of half its width and of its height.
 _MARKS = np.array([(0.0, 0.0), (0.0, -2 / 17), (0.0, 0.5), (-0.7, 0.9), (0.0, 0.9), (0.7, 0.9)])
 _PADDING = (4.0, 1.0)  # clearance around a measured text [pt]: letters are drawn with hinting and slant
 
@@ -185,7 +184,7 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """Make the layout of a drawing from given places of its labels."""
+    """Make a layout from the places of a drawing's labels; `held` is a transformation that must stay."""
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -265,7 +264,7 @@ def _with_list(
 def _make_room(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[list[int], float, Fit, Sequence[Place | None]]:
-    """Shrink the drawing until a list of the labels without a free place fits below it.
+    """Shrink the drawing, unless `held` is given, until a list of labels without a place fits below it.
 
     In the smaller drawing more labels may lack a free place: the steps are repeated until all such labels
     are listed.  Returns the indices of these labels, the top of the list [pt], the scale, and all places.

@@ -105,7 +105,7 @@ class Outputs(Files):
     csv : Path, optional
         Write a table for other programs into this file: .csv, .tsv or .txt.
     report : Path, optional
-        Write inputs, results, drawings and warnings into this file, which needs no other: .html.
+        Write inputs, results, drawings and warnings into this self-contained file: .html.
     force : bool
         Overwrite files that exist.
     """
@@ -127,7 +127,7 @@ class AnswerFiles(Files):
     json : Path, optional
         Write the result with its error estimate and provenance into this file: .json.
     report : Path, optional
-        Write inputs, result and warnings into this file, which needs no other: .html.
+        Write inputs, result and warnings into this self-contained file: .html.
     force : bool
         Overwrite files that exist.
     """
@@ -251,7 +251,7 @@ class VaryOptions:
     together : bool
         Take the first values of all inputs, then the second, in place of all combinations.
     workers : int
-        Number of processes; the answer is the same for any.
+        Number of processes; the result does not depend on it.
     store : Path, optional
         Folder in which finished designs are kept; the same command resumes from it.
     """

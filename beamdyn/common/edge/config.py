@@ -87,7 +87,7 @@ class ConfigError(ValueError):
 
 
 class MissingValue(InvalidValue):
-    """Raised for a missing value that is required; the message names the field and the allowed range."""
+    """Raised for a missing value that is required; the message names the field and what to give."""
 
     def worded(self, word: Callable[[Part], str]) -> str:
         """Return the message; the function `word` words each of its parts for Python, files or forms."""
@@ -95,7 +95,7 @@ class MissingValue(InvalidValue):
 
 
 class CoreSection(Section):
-    """A table of a file that describes an object of the package; errors of the object name the table."""
+    """A table of a file that describes an object of the package; the object's errors are the table's."""
 
     @cached_property
     def core(self) -> Any:
@@ -369,8 +369,8 @@ def section_of(
     kind : str
         Value of the key ``kind``, by which alternatives of a table differ; if empty, there is no such key.
     tables : mapping, optional
-        How to read fields whose annotation does not suffice: an annotation for pydantic, for each class of a
-        field; a class derived from `Quantity`, for each class of a description.
+        For fields whose own annotation does not suffice: the annotation for pydantic, by class of the field;
+        or a class derived from `Quantity`, by class of the field's description.
     base : type of MadeSection
         Base class of the new class; its fields are keys, too.
 

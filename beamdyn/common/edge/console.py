@@ -46,7 +46,7 @@ class Pace:
         self._counts: list[int] = []
 
     def note(self, now: float, done: int) -> None:
-        """Store the number of steps that are done at a time [s]."""
+        """Store the number of steps that are done by the time `now` [s]."""
         self._times.append(now)
         self._counts.append(done)
 

@@ -199,7 +199,7 @@ def named_values(text: DataText, names: Collection[str]) -> dict[str, NamedValue
     Returns
     -------
     dict
-        The values that the file has, by plain name.
+        The values that the file has, by names as `plain_name` returns them.
 
     Raises
     ------
@@ -229,9 +229,9 @@ def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapp
     text : DataText
         The file.
     found : mapping
-        Values of the file, by plain name.
+        Values of the file, by names as `plain_name` returns them.
     names : mapping
-        Required names as shown in messages, by plain name.
+        Required names as shown in messages, by names as `plain_name` returns them.
 
     Raises
     ------
@@ -343,8 +343,8 @@ def read_csv(
     known : mapping
         Known quantities, by name.
     names : mapping
-        Name of the quantity for each heading, as `plain_name` returns it; several headings may mean the same
-        quantity.
+        Names of quantities, by heading in the form that `plain_name` returns; several headings may mean the
+        same quantity.
     may_lack : collection of str
         Quantities whose cells may be empty.
     least_rows : int
@@ -388,7 +388,7 @@ def _cells(text: DataText, line: int, delimiter: str) -> list[str]:
 
 
 class _ColumnHead(NamedTuple):
-    """A column heading: name of the quantity (empty if not known), unit as written, and quantity."""
+    """A column heading: its text, name of the quantity (empty if not known), unit as written, quantity."""
 
     head: str
     name: str

@@ -43,7 +43,7 @@ class Section(BaseModel):
         return (_empty_section, (type(self).__module__, known), self.__getstate__())
 
 
-# Class of each table, by name and keys; if classes are equal, only the first one is kept.
+# Python class of each table, by module, name and keys; of classes that agree in these, the first is stored.
 _SECTIONS: dict[str, type[Section]] = {}
 
 
@@ -66,7 +66,7 @@ class SiNumber(float):
 class Quantity(Described):
     """A number with a unit in a file, for ``Annotated[float, Quantity("m", "L", "length")]``.
 
-    Files give it as text with a unit ("50 mm"), or as a plain number if `unit` is "".  The pydantic model
+    Files give it as text with a unit ("50 mm"), or as a number alone if `unit` is "".  The pydantic model
     stores the value in SI units.
     """
 
@@ -221,7 +221,7 @@ def describe(model: type[BaseModel], prefix: str = "", choose: Choice = _each) -
     Parameters
     ----------
     model : type of BaseModel
-        Model whose fields are quantities, plain types with a `description`, or further models.
+        Model whose fields are quantities, types such as str with a `description`, or further models.
     prefix : str
         Text to put before each path.
     choose : callable

@@ -31,7 +31,7 @@ _BETWEEN = 1.5  # width of the gap between two columns, in letters
 _FEW_DECADES = 1e2  # ratio of the limits of a logarithmic axis above which minor ticks can be omitted
 _MOST_KEPT = 50  # largest number of pictures whose axes' positions, or frames, are stored
 _PLACES: dict[tuple[object, ...], list[Bbox]] = {}  # positions of axes, by size and labels of their picture
-# SVG, without its end, of the frames of pictures that have been seen twice; "" for those seen once.
+# SVG, without its end tag, of frames (see `svg_in_haste`) that were drawn twice; "" for those drawn once.
 _FRAMES: dict[tuple[object, ...], str] = {}
 _START = re.compile(r"<svg[^>]*>")  # tag before the elements of an SVG
 
@@ -141,7 +141,7 @@ def _shown(ax: Axes) -> tuple[object, ...]:
 
 
 def _only(figure: Figure, parts: Sequence[Artist]) -> str:
-    """Return some parts of a figure and of its axes as SVG, without its end."""
+    """Return some parts of a figure and of its axes as SVG, without its end tag."""
     kept = {*parts, *figure.axes}
     found = (part for whole in (figure, *figure.axes) for part in whole.get_children())
     others = [part for part in found if part not in kept and part.get_visible()]

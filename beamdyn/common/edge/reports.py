@@ -12,7 +12,7 @@ from beamdyn.common.results.pictures import Axes, Figure, save_figure
 
 
 def print_heading(screen: Console, paper: Mapping[str, Any], between: str = ", ") -> None:
-    """Print title, authors, journal and year of a paper, if its file of published numbers has them."""
+    """Print title, authors (with `between` between them), journal and year of a published paper."""
     people = between.join(paper.get("authors", ()))
     parts = people, paper.get("journal", ""), str(paper["year"])
     screen.print(f"{paper['title']}\n{', '.join(filter(None, parts))}", style="bold")

@@ -168,7 +168,7 @@ def _note(result: Spread) -> str:
         slopes = "designs about it"
     said = (
         f"{result.designs} random designs, {result.worst.designs} for worst cases.",
-        "Digits are as far as errors stand behind them.",
+        "Numbers have only the digits that their errors support.",
         f"First order: slopes at the nominal design, from {slopes}.",
         f"Worst: within the ends of all tolerances{normal};",
         f"at corners as far as {result.samples} pairs of designs show.",

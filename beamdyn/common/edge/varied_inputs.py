@@ -17,7 +17,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.described import Designs, VariedInput
 from beamdyn.common.spreading.tolerances import SpreadInput, parse_tolerance
 
-# Tolerances ----------------------------------------------------------------------------------------
+# Varied inputs -------------------------------------------------------------------------------------
 
 
 _NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
@@ -165,8 +165,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     """
     matches = [i for i in inputs if key in (i.path, i.name)]
     if all(i.required or i.default is None for i in matches):
-        # A required input takes precedence over inputs that default to it, such as those of a brake's second
-        # shoe.
+        # A required input takes precedence over inputs that default to it, as those of a brake's second shoe.
         matches = [i for i in matches if i.required] or matches
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")

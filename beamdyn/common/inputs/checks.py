@@ -101,7 +101,7 @@ class InvalidValue(ValueError):
         return replace(self, value=value, limit=limit, unit=unit, cases=cases)
 
     def by_case(self) -> dict[int, InvalidValue]:
-        """Return a separate error for each invalid case, by the number of the case."""
+        """Return a separate error for each invalid case, by the index of the case."""
         if self.cases is None:
             return {}
         bad, value, limit = self.cases.bad, self.cases.value, self.cases.limit
@@ -196,7 +196,7 @@ def refuse(
 
 
 def real(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """Return a finite real number (a Python or numpy number, a Decimal or the like) as a float."""
+    """Return a float; raise an error unless it is a finite real number (of Python, numpy, Decimal ...)."""
     number = _as_float(value)
     if not math.isfinite(number):
         raise InvalidValue(name, value, "give a finite number" + in_unit(unit), remedy, unit)
@@ -236,14 +236,14 @@ def positive(name: str, value: object, unit: str = "", remedy: str = "") -> floa
 
 
 def moderate(name: str, value: object, unit: str = "") -> float:
-    """Return a finite number that is small enough for powers and products not to overflow."""
+    """Return a finite number; raise an error if it is so large that powers or products may overflow."""
     number = real(name, value, unit)
     refuse(abs(number) > MOST, name, number, unit, "give at most {limit} either way", limit=MOST)
     return number
 
 
 def size(name: str, value: object, unit: str = "", remedy: str = "") -> float:
-    """Return a number greater than zero; refuse it if it is so large or small that powers may overflow."""
+    """Return a number; raise an error unless above zero, or if so large or small that powers may overflow."""
     number = positive(name, value, unit, remedy)
     refuse(number < 1 / MOST, name, number, unit, "give a size of {limit} or more", remedy, limit=1 / MOST)
     refuse(number > MOST, name, number, unit, "give a size of at most {limit}", remedy, limit=MOST)
@@ -258,7 +258,7 @@ def not_negative(name: str, value: object, unit: str = "", remedy: str = "") -> 
 
 
 def amount(name: str, value: object, unit: str = "") -> float:
-    """Return a number of zero or more that is small enough for powers and products not to overflow."""
+    """Return a number; raise an error if it is below zero, or so large that powers may overflow."""
     number = not_negative(name, value, unit)
     refuse(number > MOST, name, number, unit, "give at most {limit}", limit=MOST)
     return number
@@ -290,7 +290,7 @@ def count(name: str, value: object, least: int = 1, most: float = math.inf, reme
 
 
 def flag(name: str, value: object) -> bool:
-    """Return True or False, given by Python or numpy, as a bool."""
+    """Return a bool; raise an error unless the value is True or False, of Python or numpy."""
     if not isinstance(value, bool | np.bool_):
         raise InvalidValue(name, value, "give True or False")
     return bool(value)
@@ -325,7 +325,7 @@ def function(name: str, value: object, remedy: str = "") -> None:
 
 
 def one_of(name: str, value: object, choices: Sequence[str]) -> None:
-    """Raise an error unless a value is one of a few words."""
+    """Raise an error unless a value is one of the given words."""
     if not isinstance(value, str) or value not in choices:
         *others, last = map(repr, choices)
         raise InvalidValue(name, value, f"give {', '.join(others)} or {last}")
@@ -360,7 +360,7 @@ def check_used(what: str, options: Mapping[str, Collection[str]], **given: objec
 
 
 def real_array(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    """Return a one-dimensional array of finite floats."""
+    """Return a one-dimensional array of floats; raise an error unless all values are finite numbers."""
     array = as_floats(values)
     if array is None:
         raise InvalidValue(name, values, "give a sequence of numbers")
@@ -392,7 +392,10 @@ _UNIQUE, _IN_ORDER = "pass numpy.unique({field})", "give each once, in ascending
 
 
 def ascending(name: str, values: float | Sequence[float] | np.ndarray) -> np.ndarray:
-    """Return finite floats, ascending, in an array with one axis; a single number gives length 1."""
+    """Return floats, shape (n,); raise an error unless they are finite and ascend without repeats.
+
+    A single number gives length 1.
+    """
     array = as_floats(values)
     array = real_array(name, array.reshape(1) if array is not None and not array.ndim else values)
     if not array.size:

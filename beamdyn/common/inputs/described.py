@@ -29,7 +29,7 @@ class Described:
     Parameters
     ----------
     unit : str
-        SI unit; "" for a plain number, or a word.
+        SI unit; "" for a dimensionless number, and for an input that is a word.
     symbol : str
         Symbol of the quantity in formulas.
     meaning : str
@@ -144,14 +144,14 @@ def kinds_of(hint: Any) -> list[Any]:
 
 @cache
 def described_hints(made: Callable[..., Any]) -> dict[str, Any]:
-    """Return the annotations of all arguments with a `Described` of a dataclass or function, in order."""
+    """Return the annotations, by name, of those arguments of a class or function that have a `Described`."""
     hints = get_type_hints(made, include_extras=True)
     return {name: hint for name, hint in hints.items() if description(hint)}
 
 
 @cache
 def descriptions(made: Callable[..., Any]) -> dict[str, Described]:
-    """Return the `Described` objects of the arguments of a dataclass or function, in order."""
+    """Return the `Described` objects of the arguments of a dataclass or function, by name, in order."""
     return {name: found for name, hint in described_hints(made).items() if (found := description(hint))}
 
 
@@ -235,7 +235,7 @@ def _fields_by_key(made: type) -> dict[str, str]:
 
 
 COMBINATIONS = ("product", "zip")
-MOST_DESIGNS = 1_000_000  # largest number of designs whose results fit into memory
+MOST_DESIGNS = 1_000_000  # largest number of designs in one computation, so that results fit into memory
 
 
 @dataclass(frozen=True)

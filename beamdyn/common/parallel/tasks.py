@@ -150,7 +150,7 @@ class StudyInterrupted(RunInterrupted):
 
 @dataclass(frozen=True)
 class Task:
-    """A part of a computation: a function that makes its input, its size and its index.
+    """A part of a computation: a function that makes the part's input; its size; the place of its result.
 
     Parameters
     ----------

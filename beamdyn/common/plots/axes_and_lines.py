@@ -17,7 +17,7 @@ _COLOUR = "#5a4200"  # text colour of the notes
 
 
 def set_up_axes(ax: Axes | None, xlabel: str, ylabel: str) -> Axes:
-    """Label axes, and give them a grid and plain tick numbers; make new axes if none are given."""
+    """Label axes, and give them a grid and tick numbers without offset; make new axes if none are given."""
     ax = new_axes() if ax is None else ax
     ax.set_xlabel(xlabel, fontsize=12)
     ax.set_ylabel(ylabel, fontsize=12)

@@ -13,13 +13,12 @@ from beamdyn.common.results.columns import SI_UNITS, DisplayUnits, evenly_spread
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure, add_legend, new_figure
 
 _MOST_CURVES = 8
-# Height of the lowest row of crosses that mark missing values, and distance between rows, as fractions of the
-# axes' height.
+# Crosses that mark missing values: height of the lowest row, and row distance, over the height of the axes.
 _LOWEST, _ROW = 0.02, 0.03
 _GREY = "0.5"
 _FEW = 4  # largest number of cases drawn as single lines along the span; of more cases a band is drawn
 _MARKERS = "osD^vXP"
-_SAME = 1e-6  # invisible difference of two curves, as a fraction of the largest value
+_SAME = 1e-6  # difference of two curves that is too small to see, as a fraction of the largest value
 _FEWEST_BARS = 3  # least number of bars for which a bar chart has space
 
 

@@ -172,7 +172,7 @@ def animate(
     """
     x, t, deflection = _check_history(x, t, deflection)
     figure = note_below(new_figure(6.4, 3.6), notes)
-    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # for the whole motion
+    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # [mm], in all frames
     ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
     ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
     ax.grid(color="0.85", linewidth=0.7)

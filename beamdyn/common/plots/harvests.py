@@ -120,7 +120,7 @@ def plot_harvest(
 def plot_resistances(
     resistances: np.ndarray, power: np.ndarray, best: float, label: str, ax: Axes | None = None
 ) -> Axes:
-    """Draw power [W] over load resistance [ohm] on logarithmic axes, and mark and label the best."""
+    """Draw power [W] over load resistance [ohm] on logarithmic axes; mark `best`, and name it `label`."""
     ax = set_up_axes(ax, "load resistance [ohm]", "mean power [W]")
     ax.plot(resistances, power, color=COLOURS[0], linewidth=1.8, marker=".", label="tried")
     ax.plot(best, power.max(), "o", color=COLOURS[1], label=label)

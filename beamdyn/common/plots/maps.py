@@ -131,10 +131,10 @@ _WIDE = (
 _DIGITS = 4
 _TICKS = 6  # most steps between the numbers below a map, which may be long
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
-# The hatched region without results ends where the smoothed fraction of missing results is 1/2: standard
-# deviation [grid steps] of the smoothing Gaussian; least distance of the fraction from 1/2 at grid points.
-_SMOOTHED, _APART = 1.0, 0.02
-_SAME = 1e-9  # relative difference of values due to rounding: no contour lines are drawn between them
+# The hatched region without results ends where the fraction of missing results, smoothed, is 1/2.
+_SMOOTHED = 1.0  # standard deviation of the Gaussian that smooths the fraction [grid steps]
+_APART = 0.02  # least distance of the smoothed fraction from 1/2 at grid points
+_SAME = 1e-9  # relative range of the values below which they count as equal: no contour lines are drawn
 # Fraction of the smallest, and of the largest, values that do not influence the contour levels.
 _RARE = 0.04
 _LETTERS = 10.0  # characters of a title that fit into an inch
@@ -316,7 +316,7 @@ def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
 
 
 def _draw_map(ax: Axes, inputs: Sequence[MapInput], answer: MapAnswer) -> None:
-    """Draw contour lines over two inputs on a hatched background."""
+    """Draw contour lines over two inputs; the region without results is hatched."""
     _set_up(ax, inputs)
     if not inputs[0].is_logarithmic:
         ax.locator_params(axis="x", nbins=_TICKS)

@@ -369,7 +369,7 @@ def plot_frequency_response(
         Frequencies [Hz] and values of each curve; the frequency 0 is not drawn.
     ylabel : str
         Label of the vertical axis.
-    labels : sequence of str, one a curve
+    labels : sequence of str, one per curve
         Names of the curves in the legend; a curve with an empty name has no entry.
     ax : Axes, optional
         Axes to draw on; new axes if not given.

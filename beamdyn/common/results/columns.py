@@ -249,7 +249,7 @@ class Columns:
     *columns : Column
         The columns.
     title, note : str
-        Title of their table, and the sentences below it, a line each.
+        Title of the table, and the text below it, one sentence per line.
     """
 
     def __init__(self, *columns: Column, title: str = "", note: str = "") -> None:
@@ -311,7 +311,7 @@ class Meaning:
     Parameters
     ----------
     unit : str
-        SI unit; "" for a plain number.
+        SI unit; "" for a dimensionless number.
     words : str
         Meaning of the number: a phrase without a full stop.
     shown : str

@@ -78,7 +78,7 @@ class Comparison(Verdict):
         return abs(self.deviation) <= self.bound
 
     def cells(self) -> list[str]:
-        """Return the row of the comparison in a table."""
+        """Return the cells of the comparison's row in a table."""
         ends = self.published if isinstance(self.published, tuple) else (self.published,)
         deviation = supported(self.deviation, self.error, 2)
         if len(ends) > 1 and self.deviation == 0:

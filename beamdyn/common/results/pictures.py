@@ -115,14 +115,14 @@ def add_legend(ax: Axes) -> Axes:
 
 
 def figure_of(draw: Callable[[Axes], object], size: tuple[float, float] = (7.5, 4.8)) -> Figure:
-    """Make a figure of a given size [inch] with axes on which `draw` draws.  It need not be closed."""
+    """Make a figure of a given size [inch] with axes on which `draw` draws; pyplot does not keep it open."""
     figure = new_figure(*size)
     draw(figure.subplots())
     return figure
 
 
 def new_axes(width: float = 7.5, height: float = 4.8) -> Axes:
-    """Make axes of a new figure of a given size [inch], which matplotlib keeps until it is shown."""
+    """Make axes of a new figure of a given size [inch], which pyplot keeps open until it is closed."""
     from matplotlib import pyplot
 
     return pyplot.subplots(figsize=(width, height), layout="constrained")[1]
@@ -214,7 +214,7 @@ def _place(mark: Artist) -> int | None:
 
 
 def _recolour(mark: Artist, moves: Mapping[int, int]) -> None:
-    """Change the colour of a line or area; if all colours are used, a line is dashed."""
+    """Change a mark's colour as `moves` maps indices of `COLOURS`; beyond the list, a line is dashed, too."""
     place, line = _place(mark), hasattr(mark, "get_linestyle")
     if place is None or place not in moves:
         return

@@ -229,7 +229,7 @@ class Shown(OneLine, InDisplayUnits):
             cls.plot = labelled(vars(cls)["plot"])  # pyright: ignore[reportAttributeAccessIssue]
 
     def headline(self) -> Iterable[str]:
-        """Yield the parts of the result's one-line summary: main numbers with units, error, and cautions.
+        """Yield the parts of the result's one-line summary, such as main numbers with units, and the error.
 
         By default, yield the first public fields and the number of warnings.
         """
@@ -247,11 +247,11 @@ class Shown(OneLine, InDisplayUnits):
         return getattr(getattr(self, "scene", None), "label", "")
 
     def without_waiting(self) -> Any:
-        """Return a copy without the parts that are not computed yet; see `_repr_html_`."""
+        """Return a copy to display at once: parts that take long and are not computed yet are omitted."""
         return self
 
     def to_table(self, units: Units = None) -> str:
-        """Return the table that the command prints, as text.
+        """Return the table that the command of the analysis prints, as text.
 
         Parameters
         ----------

@@ -3,4 +3,4 @@
 from __future__ import annotations
 
 SHOWN_BY: dict[str, str] = {}  # the module with `VIEWS` for each package of results
-MEDIA: list[str] = []  # the module that makes texts, data frames and pages of any result
+MEDIA: list[str] = []  # its last entry names the module that makes texts, data frames and HTML of any result

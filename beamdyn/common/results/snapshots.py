@@ -108,8 +108,8 @@ def nullified(value: Any) -> Any:
 
 
 _ADDED = "added"
-ADDED_LATER = {_ADDED: True}  # marks fields that older files lack; the default holds then
-# Packages whose classes a file may name, with fields that do not affect comparison or results.
+ADDED_LATER = {_ADDED: True}  # metadata of fields that older files lack; loading sets them to their defaults
+# Packages whose classes a saved file may name; `fingerprint` ignores their fields that equality ignores.
 _PACKAGES = ("beamdyn", "brakes")
 
 

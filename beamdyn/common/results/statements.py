@@ -25,8 +25,8 @@ GROWING = "unstable"  # the motion grows: it is unstable
 NO_ANSWER = "no answer"  # some of many cases, or a part of the requested result, have no solution
 INPUT = "input"  # an input has no effect, or is doubtful
 EXCITATION = "excitation"  # no excitation moves the beam, or the excitation is doubtful
-IN_LINE = "in line"  # loads act exactly in line, where any offset changes the result
-LIMITS = "limits"  # other limits of validity: large strain, few vibrations
+IN_LINE = "in line"  # loads act exactly along one line: any offset of a load would change the result
+LIMITS = "limits"  # other limits of validity, such as large strain
 
 
 class Speeds(Part):
@@ -224,7 +224,7 @@ def announced(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answ
 
 
 def announced_of_plain_beam(analysis: Callable[Arguments, Answer]) -> Callable[Arguments, Answer]:
-    """Decorate an analysis of the straight beam so that it warns, without advice on physics "auto"."""
+    """Decorate an analysis like `announced`; its warning does not advise to use physics "auto"."""
     return _announcing(analysis, "")
 
 

@@ -26,7 +26,7 @@ def call(function: str, *given: Any) -> str:
 
 
 def named_designs(stored: str | None) -> dict[str, tuple[str, Entries]]:
-    """Read the named designs stored in the browser: document and field texts; omit malformed ones."""
+    """Return kind of file and field texts of the designs in the browser, by name; omit malformed ones."""
     try:
         held = json.loads(stored or "{}")
     except ValueError:

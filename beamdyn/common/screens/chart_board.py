@@ -31,8 +31,7 @@ class _ShownChart:
             self.heading: Any = ui.label().classes("chart-title").props('role="heading" aria-level="3"')
             self.element: Any = ui.echart({}, renderer="svg").classes("chart").props('role="img" tabindex=0')
         self.element.on("keydown", js_handler=f"(event) => zoomChart(event, {self.element.id})")
-        # The chart component restores the data that it received first; therefore send the present data
-        # afterwards.
+        # The chart component restores the data that it received first, so the present data are sent again.
         self.element.on("chart:restore", self.update, args=[])
 
     @property

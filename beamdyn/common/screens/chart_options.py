@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartCurve
 from beamdyn.common.drawing.strokes import INKS
 
-_DIGITS = 5  # significant digits of numbers; decimals of positions relative to the axis
+_DIGITS = 5  # significant digits of values, and of x positions relative to the range of x
 _MOST_DIGITS = 10  # most digits of the values of a curve that varies little
 _WIDE = 0.15  # fraction of the axis below which a band is too narrow for its text
 # Colours of curves, used in turn.

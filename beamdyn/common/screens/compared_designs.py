@@ -98,7 +98,7 @@ def _tables(parts: Iterable[RenderableType]) -> Iterator[Table]:
 
 
 class _TableRow(NamedTuple):
-    """A row of a table: its index, its texts, and its numbers by column heading."""
+    """A row of a table: its number from 1, its texts, the unit, and its numbers by column heading."""
 
     number: int
     words: str

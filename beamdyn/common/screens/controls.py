@@ -107,7 +107,7 @@ class Player:
             self._rest = asyncio.get_running_loop().call_later(_REST, self._stop)
 
     def _stop(self) -> None:
-        """Stop, and report to NiceGUI the changes that were written directly into the page."""
+        """Count the slider as at rest; report to NiceGUI the changes that were written into the page."""
         self._swings = False
         if not self._slider.is_deleted:
             with self._slider:

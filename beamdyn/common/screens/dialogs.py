@@ -71,7 +71,7 @@ class DesignsDialog:
     keep : callable
         ``keep(name)`` stores the open design under a name; it returns "", or the reason if it fails.
     open, compare : callable
-        Called with name, document and field texts of a design.
+        Called with the name of a design, the name of its kind of file, and its field texts.
     delete : callable
         Called with the name of a design.
     """
@@ -100,9 +100,9 @@ class DesignsDialog:
     def show(
         self, kept: Mapping[str, tuple[str, Entries]], examples: Sequence[Example], document: Document
     ) -> None:
-        """Show the dialog with named designs and examples; only designs of `document` can be compared.
+        """Show named designs and examples; only designs for the screens of `document` can be compared.
 
-        An example opens in `document` if it reads the same kind of file as the document of the example.
+        An example opens on these screens if they read the same kind of file as those of the example.
         """
         self._said.set_text("")
         self._list.clear()

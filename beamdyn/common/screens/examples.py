@@ -42,7 +42,7 @@ _KNOWN: dict[str, tuple[Example, ...]] = {}  # stored, as checking takes a secon
 
 
 def examples_of(program: Program) -> tuple[Example, ...]:
-    """Return the examples that any document of a program can open, by name."""
+    """Return the examples that a program can open, in alphabetical order of their file names."""
     if program.name not in _KNOWN:
         _KNOWN[program.name] = tuple(_accepted(program))
     return _KNOWN[program.name]
@@ -55,7 +55,7 @@ def examples_folder() -> Path:
 
 
 def _accepted(program: Program) -> Iterator[Example]:
-    """Yield the TOML files that a document of the program can open."""
+    """Yield the TOML files that the program can open, each with the first `Document` that accepts it."""
     folder = examples_folder()
     found = [file for place in (folder, folder / "calipers") for file in place.glob("*.toml")]
     for file in sorted(found, key=lambda file: file.name):

@@ -28,9 +28,9 @@ class FindPanel:
     Parameters
     ----------
     work : OpenDocument
-        The open document.
+        The open input file, with its results.
     screen : Screen
-        The screen of the document that contains the panel.
+        The screen that contains the panel.
     backwards : Backwards
         The inverse questions that the screen offers.
     solver : RunsTasks

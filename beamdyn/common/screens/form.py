@@ -26,9 +26,9 @@ class Form:
     Parameters
     ----------
     work : OpenDocument
-        The open document, whose texts are in the fields at first.
+        The open input file, whose texts are in the fields at first.
     screen : Screen
-        The screen of the document that contains the form.
+        The screen that contains the form.
     inputs : sequence of Input
         Inputs; those in the tables of the screen have a field.
     changed : callable
@@ -60,7 +60,7 @@ class Form:
         self._units: dict[str, str] = {}  # units of numbers typed without a unit, by path of the input
         self._tables: dict[str, Any] = {}
         self._places: dict[str, Any] = {}  # elements around the fields, by path of the input
-        self._rest: dict[str, Any] = {}  # foldable parts of tables, by path
+        self._rest: dict[str, Any] = {}  # foldable parts of tables, by path of the inputs in them
         self._drags = {drag.path: drag for drag in screen.drags}
         for section in screen.sections:
             chosen = [entry for entry in inputs if form_entries.table_of(entry.path) == section]
@@ -204,7 +204,7 @@ class Form:
         return field
 
     def _heard(self, entry: Input, typed: str) -> None:
-        """Read a text that was typed or written into a field, and show how it was understood."""
+        """Read the text of a field after the user or the program changed it; show how it is understood."""
         self.typed[entry.path] = typed
         read, field = self._read(entry.path), self.fields[entry.path]
         self._units[entry.path] = form_entries.unit_of(read.text, entry) or self._units[entry.path]

@@ -54,9 +54,9 @@ def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
 
 
 def _lined(value: Any) -> str:
-    """Return a value as TOML; a list of tables, or of rows of plain numbers, has one line per item.
+    """Return a value as TOML; a list of tables, or of rows of numbers, has one line per item.
 
-    A list of points stays on one line, since coordinates with units are no plain numbers.
+    A list of points stays on one line, since coordinates with units are texts.
     """
     rows = _is_list_of(list, value) and any(isinstance(cell, int | float) for cell in value[-1])
     if rows or _is_list_of(dict, value):

@@ -123,7 +123,7 @@ def draw_sheet(
     view : Viewport, optional
         Viewport to keep, so that the picture does not shift while a handle moves.
     other : sequence of sequences of Drawing
-        Drawings of another design, which are drawn behind.
+        Drawings of another design, which are drawn behind those of the result.
     name : str
         Name of the other design.
     narrow : bool
@@ -213,7 +213,7 @@ def _coordinates(text: str, entry: Input) -> Sequence[str]:
 def _number(value: float, text: str, unit: str, grain: float) -> str:
     """Return a quantity in the unit of the old text, rounded to the increment `grain`.
 
-    If the old text agrees within rounding, it is returned.
+    If the old text differs from the value by half an increment or less, it is returned.
     """
     grain = grain if unit == "m" else _ANGLE
     try:

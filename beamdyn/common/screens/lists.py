@@ -1,4 +1,4 @@
-"""Descriptions of lists of named items in a document, for which a form has no fixed number of fields."""
+"""Descriptions of lists of named items in an input file, for which a form has no fixed number of fields."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A document that a client has opened: its field texts and their history, its results, and errors."""
+"""An input file that is open on a page: its field texts and their history, its results, and errors."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
 
-_MOST = 200  # largest number of earlier states of a document that undo can restore
+_MOST = 200  # largest number of earlier states of a design that undo can restore
 _TOGETHER = 1.0  # time within which changes of the same fields are one step of undo [s]
 
 
@@ -146,12 +146,12 @@ class OtherDesign(NamedTuple):
 
 @dataclass
 class OpenDocument:
-    """A document that a client has opened; clients do not share documents.
+    """An input file that is open on the page of one client; clients do not share it.
 
     Parameters
     ----------
     document : Document
-        The kind of document.
+        The kind of file, and the screens for it.
     """
 
     document: Document
@@ -212,7 +212,7 @@ class OpenDocument:
         self.history.part()
 
     def recall(self, stored: Mapping[str, object]) -> bool:
-        """Restore the stored texts of fields that have not changed since; return whether any text changed."""
+        """Restore stored texts, but keep those that the user has changed; return whether any text changed."""
         base = self.document.base_entries
         changed = {path: text for path, text in self.entries.items() if base.get(path) != text}
         before = self.entries
@@ -295,7 +295,7 @@ class OpenDocument:
         return ShownAnswer(answer, shown, notes, entries, headline, perf_counter() - start)
 
     def keep(self, screen: Screen, outcome: Outcome) -> bool:
-        """Store a new result; or keep the last one, and store the errors that prevent a new one."""
+        """Store a new result, or else the errors beside the last result; return whether one is new."""
         found = isinstance(outcome, ShownAnswer)
         if found:
             self.answered[screen.name] = outcome

@@ -174,7 +174,7 @@ class Page:
         self.places: dict[str, tuple[Document, Screen]] = {
             screen.name: (document, screen) for document in program.documents for screen in document.screens
         }
-        self._recalled = False  # else stored data would be overwritten before they are read
+        self._recalled = False  # whether stored data were read; until then, storing would overwrite them
         ui.colors(primary=BLUE, secondary="#444444", negative=RED)
         files = {
             "Open a file": lambda: self._file.ask(),
@@ -249,7 +249,7 @@ class Page:
         self.header.mark(stale, self.work.history, self.work.other)
 
     def _bring(self, document: Document) -> None:
-        """Show a document whose design has been replaced."""
+        """Show the screens of a kind of file whose design has been replaced."""
         if self.current[0] is not document:
             self._bar.set_value(document.screens[0].name)
         self._rebuild(document)
@@ -281,9 +281,9 @@ class Page:
     # Files ------------------------------------------------------------------------------------------
 
     def open(self, text: str, name: str) -> None:
-        """Open the text of a file as the first document that accepts it, or show the error message.
+        """Open the text of a file on the screens of the first `Document` that accepts it, or show the error.
 
-        The document that is shown is tried first.
+        The screens that are shown are tried first.
         """
         front = self.current[0]
         accepting = (each for each in (front, *self.program.documents) if each.accepts(text))
@@ -301,7 +301,7 @@ class Page:
         ui.download.content(self.work.file().encode(), f"{self.work.document.name}.toml")
 
     def report(self) -> None:
-        """Download the HTML report on the document that is shown, after all its screens are computed."""
+        """Download the HTML report on the design that is shown, after all its screens are computed."""
         document = self.current[0]
         self._making.want(f"{document.name}.html", lambda: asyncio.ensure_future(self._report_on(document)))
 
@@ -321,7 +321,7 @@ class Page:
         return await self.solver.submit(page_tasks.report, document, document.screens[0], *given)
 
     def reset(self) -> None:
-        """Return to the initial design of the document that is shown."""
+        """Return to the initial design of the kind of file that is shown."""
         document = self.current[0]
         self.work.open(document.base, document.name)
         self._rebuild(document)

@@ -34,7 +34,7 @@ Shown = Sequence[tuple[str, str, InputSweep]]
 _FEW = 3
 
 
-# Tasks: functions of a document, a screen, and further arguments, which any process can run ------------
+# Tasks: functions of a `Document` (kind of file), a `Screen` and further arguments, for any process ------
 
 
 def solve(
@@ -126,7 +126,7 @@ def report(
     title: str,
     sweeps: Shown,
 ) -> str:
-    """Return the HTML report on a document, from the results of its screens, by name of the screen."""
+    """Return the HTML report on a design, from its results `answered`, by name of the screen."""
     work = _opened(document, entries)
     work.answered = dict(answered)
     by_name = {screen.name: screen for screen in document.screens}
@@ -149,13 +149,13 @@ def drawn(screen: Screen, answer: object, place: float) -> str:
 
 
 def report_of(work: OpenDocument, title: str, sweeps: Iterable[tuple[str, str]] = ()) -> str:
-    """Return the HTML report on a document.
+    """Return the HTML report on a design.
 
     Parameters
     ----------
     work : OpenDocument
-        The open document.  The report contains tables and drawing of each screen whose result is up to date,
-        and all inputs, with defaults for those that are not given.
+        The open input file.  The report contains tables and drawing of each screen whose result is up to
+        date, and all inputs, with defaults for those that are not given.
     title : str
         Title of the report.
     sweeps : iterable of (title, picture)

@@ -32,9 +32,9 @@ class ComparisonPanel:
     Parameters
     ----------
     work : OpenDocument
-        The open document.
+        The open input file, with its results.
     screen : Screen
-        The screen of the document that contains the panel.
+        The screen that contains the panel.
     solver : RunsTasks
         Object that computes the other design in a worker process.
     solved : callable

@@ -37,7 +37,7 @@ _SERVE = "from beamdyn.common.screens.processes import serve_tasks; serve_tasks(
 _IMPORTING = "<frozen importlib._bootstrap>"  # file name of Python's code that imports modules
 _ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"), "1")
 
-Task = Callable[..., Any]  # function of a document, one of its screens, and further arguments
+Task = Callable[..., Any]  # called as task(document, screen, *rest), with a `Document` and one of its screens
 
 
 class TakesTooLong(Exception):
@@ -92,7 +92,7 @@ class Processes:
         task : callable
             An importable function.
         document, screen : Document, Screen
-            A document of the program and one of its screens.
+            A kind of input file of the program, and one of its screens.
         *rest
             Further arguments, which can be pickled.
 
@@ -406,7 +406,7 @@ def _prepare(make: Callable[[], Program], memory: int) -> None:
 
 
 def _do(make: Callable[[], Program], task: Task, document: str, screen: str, *rest: Any) -> Any:
-    """Run a task for a document and one of its screens, both of which are given by name."""
+    """Run a task for a `Document` (a kind of file) and one of its screens, both given by name."""
     return _INTERRUPTS.run(partial(task, *_screens(make)[document, screen], *rest))
 
 

@@ -52,14 +52,14 @@ _DRAWN_FIRST = 0.03  # time after which charts follow a drawing that the slider 
 
 
 class ScreenView:
-    """The view of one screen of an open document.
+    """The view of one screen of an open input file.
 
     Parameters
     ----------
     work : OpenDocument
-        The document.
+        The open input file, with its results.
     screen : Screen
-        The screen of the document to show.
+        The screen to show.
     edited : callable
         Called after a field of this screen has changed.
     open_file : callable
@@ -349,7 +349,7 @@ class ScreenView:
             panel.state()
 
     def _show_sentences(self, mistakes: dict[str, list[str]]) -> None:
-        """Show errors that concern no field of this form, and the warnings of the result."""
+        """Show errors and the result's warnings; errors at fields only where the form is out of sight."""
         answered, fields = self._answered, self.form.fields
         each = [(said, path in fields) for path, sentences in mistakes.items() for said in sentences]
         sentences = [(said, "mistake") for said, at_field in each if not at_field]

@@ -108,7 +108,7 @@ class FoldedPart:
 
 
 class FollowingFile(NamedTuple):
-    """A file that can be made from a result, for another document.
+    """An input file of another kind that can be made from a result.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ class Screen:
         ``branches(answer)`` returns, if there are several solutions, a result for each of them, by name, the
         usual one first; else an empty mapping.
     follows : FollowingFile, optional
-        A file made from the result, which a button opens as another document.
+        An input file of another kind, made from the result, which a button opens on its screens.
     sketch : callable
         ``sketch(entries)`` returns rows of drawings that explain the symbols of the form, for the options
         chosen in the form.
@@ -283,7 +283,7 @@ class Document:
         return entries_of(tables, self.inputs(entries_of(tables, ()))) | dict(self.aside)
 
     def accepts(self, text: str) -> bool:
-        """Return whether the text of a file can be opened as this document."""
+        """Return whether the text is a valid file of this kind."""
         with suppress(ConfigError):
             return bool(self.opened(text, ""))
         return False
@@ -301,7 +301,7 @@ class Document:
 
 @dataclass(frozen=True)
 class Program:
-    """An interactive program: its name, title, and documents."""
+    """An interactive program: its name, its title, and the kinds of input file with their screens."""
 
     name: str
     title: str

@@ -77,9 +77,9 @@ class SweepPanel:
     Parameters
     ----------
     work : OpenDocument
-        The open document.
+        The open input file, with its results.
     screen : Screen
-        The screen of the document that contains the panel.
+        The screen that contains the panel.
     sweeps : Sweeps
         The sweeps that the screen offers.
     solver : RunsTasks

@@ -157,7 +157,7 @@ def first_order_of(inputs: Sequence[SpreadInput], nominal: np.ndarray, slopes: S
     inputs : sequence of SpreadInput
         The inputs.
     nominal : ndarray, shape (k,)
-        Answers of the nominal design.
+        Results of the nominal design.
     slopes : Slopes
         Derivatives of the results at the nominal design.
     """

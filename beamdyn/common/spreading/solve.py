@@ -69,7 +69,7 @@ class SpreadAnswers:
         return np.nan_to_num(self.absolute_error, nan=0.0, posinf=np.inf)
 
 
-# A function that computes results from the inputs of N designs, (N,) by name; a ValueError if all fail.
+# A function that computes results from the inputs, (N,) by name, of N designs; raises ValueError if all fail.
 Evaluate = Callable[[dict[str, np.ndarray]], SpreadAnswers]
 Derivatives = Callable[[], KnownDerivatives]
 
@@ -151,7 +151,7 @@ class _FurtherAnswers:
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # which results at least one design has; only these can be missing
+    wanted: Any  # whether each result exists for any earlier design; only then its absence is reported
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)

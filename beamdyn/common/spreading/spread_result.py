@@ -114,11 +114,11 @@ class Spread(Result):
 
     @property
     def designs(self) -> int:
-        """Return the number of random designs that were computed: (2 + d) n."""
+        """Return the number of random designs that were computed: (2 + d) n, for d inputs and n samples."""
         return (2 + len(self.inputs)) * self.samples
 
     def matters_most(self, answer: int = 0) -> tuple[str, ...]:
-        """Return the input that contributes most to the variance of a result, by its total index.
+        """Return the input with the largest total Sobol' index for the result with index `answer`.
 
         Return several inputs if their indices differ by less than three standard errors; none if there are no
         indices.
@@ -137,7 +137,7 @@ class Spread(Result):
         return {each.name: value for each, value in zip(self.inputs, values, strict=True)}
 
     def plot(self, ax: Axes | None = None, answer: int = 0) -> Axes:
-        """Draw the scatter of a result: histogram, percentiles, first-order range and worst cases."""
+        """Draw the scatter of result `answer`: histogram, percentiles, first-order range and worst cases."""
         first, worst, unit = self.first_order, self.worst, self.units[answer]
         marks = (
             ("5 % and 95 %", "--", COLOURS[0], self.scatter.percentile[[1, 3], answer].tolist()),

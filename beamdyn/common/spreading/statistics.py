@@ -1,9 +1,9 @@
 """Statistics of the results of random designs, with their standard errors.
 
 The samples are divided into blocks of points that are scrambled independently, so that the scatter of the
-block means gives the error of the mean.  This needs no assumption on the results, and includes the gain of
-evenly distributed points.  A statistic is a mean or a ratio of means over blocks; its error follows by
-linearization.
+block means gives the error of the mean.  This needs no assumption on the results, and accounts for the lesser
+scatter of evenly distributed points.  A statistic is a mean or a ratio of means over blocks; its error
+follows by linearization.
 
 The designs are: random designs for statistics, the nominal design, and neighbouring designs for derivatives.
 
@@ -33,9 +33,8 @@ if TYPE_CHECKING:
 BLOCKS = 16
 LEAST, MOST = 128, 2**17  # allowed numbers of samples: fewer give blocks too small for errors
 MOST_SEED = 2**63
-# Largest step for derivatives, as a fraction of the distance to an end of the tolerance: so large that
-# rounding is negligible, so small that results are nearly linear.
-_STEP = 1 / 8
+# Large enough for negligible rounding errors, and small enough for nearly linear results.
+_STEP = 1 / 8  # largest step for derivatives, as a fraction of the distance to an end of the tolerance
 _ONE_SIDED, _BOTH_SIDES = np.array([0.25, 0.5, 0.75, 1.0]), np.array([-1.0, -0.5, 0.5, 1.0])
 
 

@@ -272,7 +272,7 @@ def _as_text(given: Distribution, unit: str) -> str:
 
 
 def without_unit(text: str, written: str, unit: str) -> str:
-    """Return the advice for a tolerance in a wrong unit: the text converted to the unit of the input."""
+    """Return the advice for a tolerance `text` with the unit `written`: its numbers converted to `unit`."""
     factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
     if factor is None:
         return f"give numbers alone{f', in {unit}' if unit else ''}"

@@ -1,4 +1,4 @@
-"""Audit of a blade from another program: mass, moments, steep steps, comparison of mode shapes."""
+"""Audit of a blade from another program: mass and its moments, steep steps, comparison of mode shapes."""
 
 from __future__ import annotations
 

@@ -155,7 +155,7 @@ def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
 
 
 def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
-    """Choose stations x/L between which the angles are nearly linear; a kink between members counts twice."""
+    """Choose stations x/L between which angles [deg] are nearly linear; kinks between members occur twice."""
     jumps = [np.abs(a[1:] - a[:-1]) > _ANGLE for a in angles]
     kinks = x[1:][(x[1:] == x[:-1]) & np.any(jumps, axis=0)]
     kept = np.sort(np.concatenate([np.union1d(stations, kinks), kinks]))
@@ -237,7 +237,7 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Raise an error unless matrices are symmetric and positive definite, with masses of rigid bodies."""
+    """Raise an error for matrices not symmetric and positive definite, and masses of no rigid section."""
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
@@ -245,7 +245,7 @@ def _check_matrices(
     ]
     if name == "mass":
         checks += [
-            (strangeness(ours) > MOST_STRANGENESS, "m on the diagonal, and m times the centre beside it")
+            (strangeness(ours) > MOST_STRANGENESS, "a rigid section: m on the diagonal, m times its centre")
         ]
     for bad, wanted in checks:
         if bad.any():

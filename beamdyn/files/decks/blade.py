@@ -32,7 +32,7 @@ class DeckColumn:
     name : str
         Heading of the column in the program's manual.
     unit : str
-        Unit that the program assumes; "" for a plain number.
+        Unit that the program assumes; "-" for a dimensionless number.
     required : bool
         Whether the program requires the column.
     positive : bool

@@ -117,7 +117,7 @@ class Deck(Result):
             comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
         if self.blade.matrices is not None:
             comments["beam"] = [
-                "rows and columns of the matrices: 1 along the axis, 2 against flap, 3 across"
+                "rows and columns of the matrices: 1 along the axis, 2 upwind (flap), 3 across (edge)"
             ]
             comments["beam"] += ["K11 to K66 are stiffnesses, M11 to M66 masses, about the axis of the blade"]
         elif self.scene.physics.torsion:
@@ -215,8 +215,7 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
 
 
 _BOTH = ("length", "hub_radius")
-# Functions that read files; for each, the names that identify the files, where to find missing data, and what
-# data the files lack.
+# For each kind of file: reading function, identifying names, where to find data that it lacks, their names.
 _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
     (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
     (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),

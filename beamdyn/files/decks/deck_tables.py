@@ -53,7 +53,7 @@ def audit_rows(audit: DeckAudit) -> Iterator[tuple[str, str, str]]:
 def _shape_table(audit: DeckAudit) -> RenderableType:
     rpm = audit.shape_speed * 9.549296585513721
     speed = f"at {rpm:.4g} rpm" if audit.shape_speed else "at rest"
-    heads = ("mode", "sum of coefficients", "largest difference", "at x/L", "our frequency [Hz]")
+    heads = ("mode", "sum of coefficients", "largest difference", "at x/L", "computed frequency [Hz]")
     rows = [
         (s.mode, f"{s.coefficient_sum:.6f}", f"{s.difference:.4f}", f"{s.place:.3f}", f"{s.frequency:.5g}")
         for s in audit.shapes

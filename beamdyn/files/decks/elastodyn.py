@@ -52,14 +52,14 @@ _UNREAD = "ElastoDyn does not use it either"
 _REASONS = {
     "PitchAxis": "of aerodynamics",
     "AeroCent": "of aerodynamics",
-    "GJStff": f"torsion_stiffness in [beam], with both rotary inertias, has it in torsion; {_UNREAD}",
+    "GJStff": f"to include it, give torsion_stiffness in [beam], and both rotary inertias; {_UNREAD}",
     "EAStff": f"the blade is rigid along its axis; {_UNREAD}",
     "Alpha": f"no coupling of flap and torsion is modelled; {_UNREAD}",
     "PrecrvRef": f"the axis of the blade is straight; {_UNREAD}",
     "PreswpRef": f"the axis of the blade is straight; {_UNREAD}",
-    **{name: f"rotary_inertia in [beam] has it; {_UNREAD}" for name in ("FlpIner", "EdgIner")},
+    **{name: f"to include it, give rotary_inertia in [beam]; {_UNREAD}" for name in ("FlpIner", "EdgIner")},
     **{
-        name: f"mass_offset and tension_offset in [beam] have such, from the shear centre; {_UNREAD}"
+        name: f"[beam] has mass_offset and tension_offset, from the shear centre, instead; {_UNREAD}"
         for name in ("FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")
     },
 }
