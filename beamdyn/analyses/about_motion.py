@@ -78,7 +78,7 @@ def steady(
         Speeds with their unit: start:stop:count, e.g. "1:150:1000 rad/s", or a list, e.g. "50, 55
         rad/s".
     tolerance
-        Largest error due to omitted harmonics, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of the amplitudes of all harmonics.
     """
     result = bd.steady_response(scene, speeds, modes, tolerance=tolerance, discretization=discretization)
     none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
@@ -130,7 +130,7 @@ def harvest(
     highest
         Highest spatial frequency of this random road; default: 2.83 1/m, as in the standard.
     tolerance
-        Largest error due to omitted harmonics, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of the amplitudes of all harmonics.
     """
     result = bd.harvest(scene, speeds, modes, tolerance, discretization, _roughness(road, highest))
     none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
@@ -179,7 +179,7 @@ def best_resistance(
     highest
         Highest spatial frequency of this random road; default: 2.83 1/m, as in the standard.
     tolerance
-        Largest error due to omitted harmonics, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of the amplitudes of all harmonics.
     """
     return bd.best_resistance(scene, speed, modes, tolerance, discretization, _roughness(road, highest))
 
