@@ -83,7 +83,7 @@ def analysis_screen(analysis: Analysis) -> Screen:
 
 
 def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
-    """Draw the picture of a result without notes, which files have but the page shows separately."""
+    """Draw the picture of a result, without notes below it, which the page shows separately."""
     result: Any = answer.result
     if narrow:
         own = hasattr(result, "picture_size")  # a picture with several panels chooses its own size
@@ -107,7 +107,7 @@ def first_entries(analysis: Analysis) -> dict[str, str]:
 
 
 def _section(analysis: Analysis) -> type[Section]:
-    """Make the form table for an analysis' options, also grouped ones: numbers, texts, choices; no files."""
+    """Make the class of the form fields for an analysis' options, also grouped ones; no fields for files."""
     fields: dict[str, Any] = {}
     for name, option in analysis.shown.items():
         if group := _group_of(option.annotation):
