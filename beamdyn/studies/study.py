@@ -234,7 +234,7 @@ def check_window(window: tuple[float, float]) -> tuple[float, float]:
 
 
 def _check_scenes(scene: Scene, designs: Designs) -> None:
-    """Check that all designs are valid scenes, by extreme values: bounds are monotone in each input."""
+    """Raise an error unless all designs are valid scenes; of few inputs, only extreme values are tried."""
     few = len(designs.inputs) <= _MOST_CORNERS
     try:
         for design in designs.extremes() if few else ():

@@ -42,7 +42,8 @@ _LOADS = {
 class ComputedCurves:
     """Computed curves as columns, their errors (which broadcast), their units, and the result they belong to.
 
-    `speed` is the speed of the computation [rad/s]; nan for curves over time or speed.
+    `speed` is the speed of the computation [rad/s], nan for curves over time or speed; `delay` [s] and
+    `phase` [rad] are as in `CurveComparison`.
     """
 
     value: np.ndarray
@@ -100,7 +101,7 @@ def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
         found = frequency_response(scene, speed, data.frequency, data.input, data.output)
     value = found.response
     if value.shape[1] != 1:
-        bound = "a turning beam answers it at two frequencies"
+        bound = "a rotating beam responds to it at two frequencies"
         raise InvalidValue(
             "input", data.input, bound, "give bending, across, n3 or a force that turns with it"
         )

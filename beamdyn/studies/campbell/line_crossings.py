@@ -65,7 +65,10 @@ class LineCrossing:
 
 @dataclass(frozen=True)
 class _Root:
-    """Speed at which a line meets a natural frequency, which is given by its index in ascending order."""
+    """Speed at which a line meets a natural frequency, which is given by its index in ascending order.
+
+    `slope` is the derivative of their distance, both angular frequencies, with respect to the speed.
+    """
 
     line: Line
     place: int

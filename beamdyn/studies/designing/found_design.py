@@ -112,7 +112,10 @@ class FoundDesign(Result):
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative change of m results over that of p numbers, (m, p): 3 if it is as a number cubed."""
+        """Relative change of m results over that of p numbers, shape (m, p).
+
+        It is 3 if a result is proportional to the cube of a number.
+        """
         return self.derivative * self.value / self.reached[:, None]
 
     @property

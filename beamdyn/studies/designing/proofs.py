@@ -97,7 +97,7 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Sign of the change of each target's result by each number, 1, -1 or 0; None if not known."""
+        """Sign (1, -1 or 0) of each target's change as each number increases; None if not known."""
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}

@@ -40,9 +40,9 @@ class Monodromy:
     Parameters
     ----------
     matrix : ndarray, shape (P, 2 n, 2 n)
-        Maps of the state (w q, q') over a period.
+        Maps over a period of the state (w q, q'), with coordinates q and frequencies w at rest [rad/s].
     error : ndarray, shape (P,)
-        Estimated errors, as norms of matrices.
+        Estimated errors of the matrices, as 2-norms.
     period : ndarray, shape (P,)
         The periods [s].
     form : ndarray, shape (P, 2 n, 2 n), or None

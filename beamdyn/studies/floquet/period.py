@@ -14,7 +14,7 @@ from beamdyn.scene.scene import Scene
 
 MOST_TURNS = 64  # largest number of cycles of the first phase in a common period of all phases
 _MOST_OTHERS = MOST_TURNS**2  # largest number of cycles of any other phase in a common period
-_COMMENSURATE = 1e-12  # relative difference of a frequency ratio from a fraction, below which it is rounding
+_COMMENSURATE = 1e-12  # relative distance from a fraction at which a frequency ratio counts as this fraction
 
 
 class Period(NamedTuple):

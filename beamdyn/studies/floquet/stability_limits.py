@@ -37,12 +37,12 @@ class StabilityLimits(Result):
     place : ndarray, shape (P, 2)
         Values of the two numbers, in SI.
     error : ndarray, shape (P,)
-        Distance, as a fraction of the ranges of the chart, within which the limit is: at this distance on
-        either side, the verdicts are "stable" and "unstable"; inf if they are not.
+        Error of the position, as a fraction of the ranges of the two numbers: at this distance on either side
+        of the limit, the motion is certainly stable and unstable; inf if this was not found.
     multiplier : ndarray of complex, shape (P,)
-        Nondimensional multiplier that leaves the unit circle.
+        Nondimensional Floquet multiplier that leaves the unit circle.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -161,7 +161,5 @@ def stability_limits(
 
 def _warnings(error: np.ndarray) -> Iterator[Statement]:
     if number := int(np.isinf(error).sum()):
-        said = (
-            f"at {counted(number, 'point')} of the limits the verdicts on both sides are uncertain: see error"
-        )
+        said = f"at {counted(number, 'point')} of the limits stability on both sides is uncertain: see error"
         yield Statement(said, kind=TOLERANCE, quantity="undecided", value=number / len(error))

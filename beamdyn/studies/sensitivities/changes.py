@@ -5,9 +5,10 @@ a position along the beam.  They are evaluated for eight values near the number,
 these values is differentiated; its last term shows how well the dependence is resolved.  Eigenvalues have far
 fewer correct digits, so that they are not differenced.
 
-With P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 and P v = 0, w^T P = 0, a change dP of P changes the
-eigenvalue by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating
-Systems, 1966, section 7).
+With the dynamic stiffness P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 at the speed omega, and P v = 0,
+w^T P = 0 at an eigenvalue s with right and left eigenvectors v and w, a change dP of P changes the eigenvalue
+by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating Systems, 1966,
+section 7).
 
 In shapes of arrays, n counts coordinates, and k eigenvalues.
 """

@@ -162,7 +162,7 @@ def _basis_settings(
 
 
 def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
-    """Yield two families of finite elements: plain and extrapolated."""
+    """Yield two families of finite elements: without and with extrapolation."""
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
         least = max(segments, -(-modes // 2), 2) * share
         cases = (
@@ -261,7 +261,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
     given = _solve_choice(AS_GIVEN, scene, speed, modes)
     choices, skipped = _list_choices(scene, speed, modes, given)
     title = f"physics: {number_of(modes, 'frequency', 'frequencies')} at {speed:.6g} rad/s"
-    what = "the worst frequency, that of the model included, relative"
+    what = "the worst frequency, relative, including the model error"
     if not choices:
         return Diagram.make(title, what, "", 0.0, (), skipped or ("no effect that can be added changes it",))
     full = choices[-1]

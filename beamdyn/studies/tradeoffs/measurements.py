@@ -92,7 +92,7 @@ def number_of(number: int, one: str, many: str) -> str:
 
 
 def pareto_front(measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
-    """Find the Pareto front: measurements that no other equals in error and time while better in one.
+    """Find the Pareto front: no other measurement is as good in error and time, and better in one of them.
 
     Parameters
     ----------
