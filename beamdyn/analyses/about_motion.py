@@ -56,7 +56,8 @@ def resonances(
     top_speed
         Largest speed to search, with its unit, e.g. "150 rad/s".
     order
-        1: resonances with the load; more: also combination resonances by the periodic coefficients.
+        1: resonances excited by the load; more: also combination resonances caused by periodic
+        coefficients of the equations.
     """
     return bd.resonance_speeds(scene, top_speed, modes, order, discretization)
 
@@ -94,7 +95,7 @@ _FEW_SPEEDS, _ROUGH = 11, 1e-2  # number of speeds, and tolerance, of a prelimin
 def _harvest_sooner(
     scene: bd.Scene, speeds: np.ndarray, road: str | None = None, highest: str | None = None, **options: Any
 ) -> Result:
-    """Compute what is harvested at few of the speeds, without its error, as a preliminary answer."""
+    """Compute the harvested power at a few of the speeds, without its error, as a preliminary result."""
     given = {"modes": "auto", "discretization": "ritz", **options, "tolerance": _ROUGH}
     few = speeds[evenly_spread(len(speeds), _FEW_SPEEDS)]
     return harvested(scene, speeds=few, road=_roughness(road, highest), compared=False, **given)
@@ -148,7 +149,7 @@ def _roughness(road: str | None, highest: str | None) -> bd.RoadRoughness | None
 def _resistance_sooner(
     scene: bd.Scene, road: str | None = None, highest: str | None = None, **options: Any
 ) -> Result:
-    """Compute a few load resistances, as a preliminary result."""
+    """Search the best load resistance roughly, as a preliminary result."""
     given = {"discretization": "ritz", **options, "tolerance": _ROUGH, "road": _roughness(road, highest)}
     return sought(ROUGH, scene, **given)
 

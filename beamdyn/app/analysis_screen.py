@@ -32,7 +32,7 @@ from beamdyn.common.screens.screens import Screen
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_FEW_MODES = 6  # modes of a preliminary result, if the tolerance chooses the number otherwise
+_FEW_MODES = 6  # number of modes of a preliminary result, if that of the full result follows from a tolerance
 _HEADLINES = 3  # largest number of parts of a result's one-line summary that a screen shows
 _NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
 _OF_COMMANDS = (
@@ -96,7 +96,7 @@ def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:
-    """Return the initial field texts of a form: the stated ones, or the options of the first example."""
+    """Return the initial field texts of a form: from `opens_with`, or from the first example."""
     name, words = analysis.function.__name__, analysis.opens_with or shlex.split(analysis.examples[0])
     given: dict[str, str] = {}
     for word, text in pairwise(words):

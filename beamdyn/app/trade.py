@@ -1,4 +1,4 @@
-"""The screen on accuracy and cost: computing time for correct digits, and the cheapest model."""
+"""The screen on accuracy and cost: computing time per number of correct digits, and the cheapest model."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.results.statements import after
 
-REFUSED = "refused"  # status of a design without a result
+REFUSED = "refused"  # status of a design whose computation failed or raised an error
 NO_ANSWERS = (
     *(REFUSED, "failed", "not found", "divergence", "flutter"),
     *("parametric instability", "past the critical speed", "turns freely about the root"),

@@ -266,7 +266,7 @@ def _cautions_of_theory(
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
-    """Build a warning about designs of which a result is missing, by `status`, because of rounding.
+    """Make a warning about designs without a result, by `status`, because of rounding errors.
 
     Nothing is yielded if all designs have a result.
     """
@@ -381,7 +381,7 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Return whether the form F of `beamdyn.modes.buckling` is positive without its first integral: (N,).
+    """Return where F of `beamdyn.modes.buckling`, whose sign decides on buckling, is surely positive: (N,).
 
     Parameters
     ----------

@@ -204,7 +204,7 @@ class SimilarDesigns(FieldsOnly):
             return common | {"inertia": tip["inertia"], "tilt": self.tilt, "in_plane": self.in_plane}
         if np.isfinite(spring := springs["second_root_stiffness"]).all():
             common["second_spring"] = spring
-        # Second moments of mass of the tip body: along the beam, along bending and along its axis [kg m2].
+        # Second moments of mass of the tip body [kg m2] along beam, bending direction and axis of bending.
         n, e, one = (self.tip[name] for name in ("inertia", "transverse_inertia", "axial_inertia"))
         twice = {"along_beam": n + e - one, "along_bending": n + one - e, "along_axis": e + one - n}
         common |= {name: np.maximum(v / 2, 0.0) for name, v in twice.items()}

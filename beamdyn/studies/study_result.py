@@ -150,8 +150,8 @@ class Study(StatesModelError):
     def left_out_places(self) -> tuple[tuple[int, ...], ...]:
         """Indices of the designs at which the model error is computed: p tuples (i1, ..., id).
 
-        These are the extremes of the inputs and other evenly spread designs; for amplitudes and peaks, which
-        take long to compute, only the design with the largest result.
+        These are the extremes of the inputs and other evenly spread designs; for results that need a motion
+        and take long to compute, only the design with the largest result.
         """
         if self.question.kind.needs_motion:
             at = [np.nanargmax(self.value)] if np.isfinite(self.value).any() else []

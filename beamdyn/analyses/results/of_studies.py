@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from beamdyn.studies.tradeoffs.measurements import Diagram
 
 _MOST_ROWS = 30  # largest number of rows in the table of a study
-_DIGITS = 10  # most digits of a speed or frequency
+_DIGITS = 10  # largest number of digits of a speed or frequency
 # Largest number of digits of a derivative, and of results side by side in a table.
 _DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4
 _RPM = 30 / np.pi  # revolutions per minute in one rad/s

@@ -200,7 +200,7 @@ class _MeasuredRow:
 
     @cached_property
     def of_shapes(self) -> np.ndarray | None:
-        """Likeness (m, n) of m measured and n computed modes: by their shapes, else by kinds in labels."""
+        """Modal assurance criterion (m, n) of measured and computed modes; without shapes see `pairing`."""
         data, modes = self.data, self.modes
         if data.shapes is None:
             return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))

@@ -55,7 +55,7 @@ class CurveComparison(Result):
     error : ndarray, shape (n, C)
         Estimated numerical errors of the computed values [same unit].
     model_error : ndarray, shape (C,)
-        Model error: changes by neglected effects relative to the largest value, as far as known.
+        Magnitude of the sum of the known changes by neglected effects, relative to the largest value.
     speed : float
         Speed at which loads and responses were computed [rad/s]; nan for other curves.
     delay : float

@@ -88,19 +88,19 @@ class Fitting:
         return found.model.discretization
 
     def scene_at(self, x: Sequence[float] | np.ndarray) -> Scene:
-        """Return the scene with the values of the free numbers that belong to variables."""
+        """Return the scene whose free numbers have the values that belong to the variables x (p,)."""
         pairs = zip(self.numbers, np.asarray(x, dtype=float).tolist(), strict=True)
         values = {number.path: number.number(each) for number, each in pairs}
         return with_numbers(self.start, values) if values else self.start
 
     def at(self, x: np.ndarray) -> FittedModes:
-        """Compute the modes of the scene that belongs to variables."""
+        """Compute the modes of the scene that belongs to the variables x (p,)."""
         self.solved[0] += 1
         return FittedModes(self, x, Model(self.scene_at(x), self.discretization))
 
     @property
     def flat(self) -> float:
-        """Slope of the sum of squares that counts as zero: the tolerance over squared relative weights."""
+        """Gradient of the sum of squares that counts as 0: the tolerance over squared relative weights."""
         return self.tolerance * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
 
     @property

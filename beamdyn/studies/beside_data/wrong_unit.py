@@ -11,7 +11,8 @@ from beamdyn.common.results.statements import INPUT, Statement
 from beamdyn.common.words import percent
 from beamdyn.studies.beside_data.pairing import NO_MODE, pair
 
-_UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, and the name of the unit
+# Ratio of given to correct values, as a number and as text (the key), and the possible cause in words.
+_UNITS: Mapping[str, tuple[float, str]] = {
     "2 pi": (2 * pi, "in rad/s, and read as Hz"),
     "60": (60.0, "in 1/min, and read as Hz"),
     "1000": (1e3, "in mHz, or in Hz and read as kHz"),
@@ -31,7 +32,7 @@ def wrong_unit(
 
     The values divided by the factor are paired with modes again.  The statement is made if each then has a
     mode within 10 %, and if the scatter of the ratios of measured to computed values is less than half of
-    that before.
+    that without the factor.
 
     Parameters
     ----------

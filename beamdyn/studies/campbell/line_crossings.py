@@ -35,7 +35,8 @@ class LineCrossing:
     error : float
         Estimated relative error of the speed.
     confidence : float
-        Smallest confidence with which the mode was tracked from the first speed to this one.
+        Smallest confidence with which the mode was tracked from the first speed to this one: 1 is certain, 0
+        a guess.
     plane_share : tuple of float
         Fractions of the mode's kinetic energy, at this speed, in the bending direction at the root and
         across.

@@ -173,7 +173,7 @@ class Proofs:
         return Words(f"{said}the least factor by ", least.says, apart, most.says)
 
     def _in_the_bounds(self) -> _Limits:
-        """Return the range of factors between results of designs within the bounds, from the corners."""
+        """Return the range of the factor between results of designs within the bounds and those of `x`."""
         ranges = self.search.ranges
         corners = [*Designs(ranges.inputs).extremes()]
         columns = {name: np.array([each[name] for each in corners]) for name in self._names}

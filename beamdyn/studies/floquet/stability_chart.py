@@ -239,7 +239,7 @@ def integrate(points: Points) -> list[Monodromy]:
 
 
 def judge(points: Points) -> list[dict[str, np.ndarray]]:
-    """Return the stability of each scene of a task, by name.
+    """Return the stability of each scene of a task: arrays (1,) by name, see `_verdicts`.
 
     It is that by Floquet multipliers, or by the largest Lyapunov exponent if the motion has no period.
     """
@@ -284,7 +284,7 @@ class _Grid:
         return Designs(self.inputs).at(*map(int, np.unravel_index(place, self.shape)))
 
     def solved(self) -> tuple[dict[str, np.ndarray], int]:
-        """Compute arrays of the chart's shape by name, and the number of scenes that were integrated."""
+        """Compute the stability as arrays of the chart's shape, by name, and count integrated scenes."""
         if not self._keeps_ratio():
             places = range(math.prod(self.shape))
             each = self._run(judge, [self.numbers(place) for place in places])

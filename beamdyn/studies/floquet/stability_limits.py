@@ -37,8 +37,8 @@ class StabilityLimits(Result):
     place : ndarray, shape (P, 2)
         Values of the two numbers, in SI.
     error : ndarray, shape (P,)
-        Error of the position, as a fraction of the ranges of the two numbers: at this distance on either side
-        of the limit, the motion is certainly stable and unstable; inf if this was not found.
+        Error of the position, as a fraction of the ranges of the two numbers: at this distance from the limit
+        the motion is certainly stable on one side and unstable on the other; inf if this was not found.
     multiplier : ndarray of complex, shape (P,)
         Nondimensional Floquet multiplier that leaves the unit circle.
     warnings : tuple of str

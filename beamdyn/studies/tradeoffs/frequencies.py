@@ -150,7 +150,7 @@ def _segments(scene: Scene) -> int:
 def _basis_settings(
     scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
 ) -> tuple[TimedCase, ...]:
-    """Return functions that compute with Ritz bases of several sizes (Legendre: on each segment)."""
+    """Make cases that compute with Ritz bases of several sizes (for Legendre, numbers per segment)."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
     least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf
@@ -302,7 +302,7 @@ def _names(choices: list[Choice]) -> str:
 def _list_choices(
     scene: Scene, speed: float, modes: int, given: Choice
 ) -> tuple[list[Choice], tuple[str, ...]]:
-    """List choices of physics: effects one by one, then together; and descriptions of missing effects."""
+    """List choices of physics: effects one by one, then together; and why other effects are left out."""
     additions, missing, _ = list_effects(scene)
     scenes = {a.name: a.scene for a in additions if a.name not in _COMPARED}
     not_known = [f"{name}: {why}" for name, why in missing.items() if name not in _COMPARED]

@@ -199,7 +199,7 @@ _EPS = float(np.finfo(float).eps)
 
 @one_blas_thread()
 def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 5.0) -> Diagram:
-    """Measure error against time of the steady response over the harmonics (interaction order).
+    """Measure error against time of the steady response over the number `harmonics` of `steady_response`.
 
     Parameters
     ----------
