@@ -42,8 +42,8 @@ SLOW_BASES = ErrorMargin(
 )
 BASES_OF_FIELDS = ErrorMargin(
     12.0,
-    "the same with two planes, shear or springs at the root",
-    "a mode may lack functions of one field only, which both bases lack",
+    "frequencies of two Ritz bases, with two planes of bending, shear or springs at the root",
+    "a mode may need more functions of one field only, and neither basis has them",
     "stated_physics_errors",
 )
 ROUNDING_OF_TWO = ErrorMargin(
@@ -55,7 +55,7 @@ ROUNDING_OF_TWO = ErrorMargin(
 BASES_OF_PLATES = ErrorMargin(
     1.5,
     "frequencies of a strip as a plate in two bases of up to 12 functions along and across",
-    "stresses in the corners of the clamp make convergence algebraic: the error is up to 1.6 distances",
+    "stresses in the corners of the clamp make convergence algebraic: errors are up to 1.6 differences",
     "stated_plate_errors",
 )
 LINEAR_MESHES = ErrorMargin(
@@ -78,20 +78,20 @@ BASES_OF_STATIC_LOADS = ErrorMargin(
 )
 MODES_OF_MOMENTS = ErrorMargin(
     3.0,
-    "moments and strains with half as many modes more",
-    "after a sudden load modes fall as k^-3: those left out are up to 2.2 times those added",
+    "moments and strains with n modes and with 1.5 n modes",
+    "after a sudden load mode k contributes as k^-3: neglected modes, up to 2.2 times as much as added ones",
     "stated_load_errors",
 )
 MODES_OF_FORCES = ErrorMargin(
     4.0,
-    "shear forces with half as many modes more",
-    "they fall as k^-2: those left out are up to 3 times those added",
+    "shear forces with n modes and with 1.5 n modes",
+    "mode k contributes as k^-2: neglected modes, up to 3 times as much as added ones",
     "stated_load_errors",
 )
 STEPS = ErrorMargin(
     1.5,
-    "motion by steps with two more stages",
-    "local errors of a sample of all steps are added up",
+    "motion by time steps of Gauss collocation, and with two more stages in each step",
+    "errors of single steps are computed for a sample of all steps, and added up",
     "stated_transient_errors",
 )
 EFFECTS = ErrorMargin(
@@ -107,7 +107,8 @@ THREE_DISCRETIZATIONS = ErrorMargin(
     "the rate of convergence varies from one discretization to the next",
     "stated_answer_errors",
 )
-# Smallest fraction of the previous difference that is used, as the last difference may be small by chance.
+# Least estimated sum of all further differences, as a fraction of the previous difference, since the last
+# difference may be small by chance.
 _LEAST_SHARE = 0.0015
 
 

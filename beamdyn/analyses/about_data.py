@@ -55,7 +55,7 @@ AtSpeeds = Annotated[
 ColumnsOfFile = Annotated[
     tuple[str, ...],
     Parameter(
-        help='Which column of the file is meant, a semicolon between them: "tip = TipDxb1; root moment = '
+        help='Columns of the file, by quantity, separated by semicolons: "tip = TipDxb1; root moment = '
         'RootMyb1", with a unit where the file has none: "tip by tip force [mm/N] = UY_2".',
         negative="",
         consume_multiple=False,
@@ -94,7 +94,7 @@ def _beside(
     'beamdyn compare examples/tyre_harvester.toml --measured "62.1, 389, 1090 Hz"',
     "beamdyn compare examples/epps.toml examples/epps.csv",
     "beamdyn compare examples/rolling_harvester.toml examples/resonance_radau.csv",
-    about_scene="The scene; a history takes its motion.",
+    about_scene="The scene; its motion is used for time histories and peaks.",
     screen="Compare",
     sooner=_beside,
 )

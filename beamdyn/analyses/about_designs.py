@@ -71,8 +71,8 @@ def sensitivities(
     modes
         Number of modes of frequencies and crossings, from the lowest; default: 3.
     order
-        Order of crossings: 1, the default: resonances with the load; more: also combination
-        resonances by the periodic coefficients.
+        Order of crossings: 1, the default: resonances excited by the load; more: also combination
+        resonances caused by periodic coefficients of the equations.
     inputs
         Inputs by their names in the file, such as beam.thickness, or speed; give the option once for each
         input; default: all.
@@ -134,11 +134,11 @@ def study(
         peak, its largest deflection in a window of time; strain, the largest along the span in
         steady motion; or power, the mean that a harvester yields.
     speed
-        Speed of frequencies, amplitudes and peaks with its unit, where it is not varied; top speed
-        of crossings. Default: the final speed of the scene's motion, or 0 without one.
+        Speed of frequencies and responses with its unit, where it is not varied; top speed of
+        crossings. Default: the final speed of the scene's motion, or 0 without one.
     modes
-        Number of modes of frequencies and crossings, from the lowest; default: 3. Amplitudes and
-        peaks take as many as they need.
+        Number of modes of frequencies and crossings, from the lowest; default: 3. Responses take as
+        many as they need.
     window
         Beginning and end of the window of time of peaks; default: 20:30 s.
     """

@@ -34,13 +34,13 @@ _STANDARD_GRAVITY = re.compile(r"(?<=\s)g(?=(\^|\*\*)?2\s*/)")
 @Parameter(name="*")
 @dataclass(frozen=True)
 class RandomInput:
-    """A random input of a turning beam: its density, where it acts, and the speed.
+    """A random input of a turning beam: its spectral density, where it acts, and the speed.
 
     Parameters
     ----------
     psd : Path, optional
-        One-sided density of the input: a CSV file with the columns f [Hz] and psd [m2/s4/Hz]
-        or [g2/Hz], of a force [N2/Hz].
+        One-sided power spectral density of the input: a CSV file with the columns f [Hz] and psd [m2/s4/Hz]
+        or [g2/Hz], for a force [N2/Hz].
     psd_axes : str, optional
         Axes on which the density is interpolated linearly between the points of --psd: log, as in standards,
         or linear, which may begin at 0 Hz; default: log.
@@ -56,7 +56,7 @@ class RandomInput:
         Velocity of the rolling wheel in place of its speed, e.g. "90 km/h".
     input : str, optional
         bending, across, n1, n2, n3: acceleration of the base; force@20 mm, force@tip, with " across" at the
-        end for that direction; default: bending, of a road n2.
+        end for that direction; default: bending, for a road n2.
     """
 
     psd: Path | None = None
@@ -177,7 +177,7 @@ def read_spectrum(path: Path, unit: str, axes: Axes = "log") -> bd.PowerSpectrum
 
 
 def spell_density(text: str) -> str:
-    """Rewrite the unit of a density for `quantity`: m2/s4/Hz for (m/s2)2/Hz, gravity2/Hz for g2/Hz."""
+    """Rewrite the unit of a density for parsing: m2/s4/Hz for (m/s2)2/Hz, gravity2/Hz for g2/Hz."""
 
     def squared(unit: re.Match[str]) -> str:
         return _POWER.sub(lambda factor: f"{factor[1]}{2 * int(factor[2] or 1)}", unit[1])

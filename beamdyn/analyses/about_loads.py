@@ -128,7 +128,7 @@ Duration = Annotated[float, options.positive("s", default="1 h")]
     'beamdyn loads examples/tyre_harvester.toml --speed "50 rad/s"',
     'beamdyn loads examples/rolling_harvester.toml --t-end "12 s" --modes 3',
     screen="Loads",
-    about_scene="The scene; a transient and steady response take its motion.",
+    about_scene="The scene; its motion is used in a transient and in steady response.",
     moving=lambda options: options["t_end"] is not None,
 )
 def loads(

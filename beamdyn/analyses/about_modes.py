@@ -41,8 +41,8 @@ def equilibrium(
     Parameters
     ----------
     branch
-        straight: the equilibrium that follows from rest as the speed rises; bent: the stable one
-        beside it, at high speed. Default: as the scene's physics requires.
+        straight: the equilibrium that follows from rest as the speed rises; bent: the stable one that
+        exists besides it at high speed. Default: as the scene's physics requires.
     """
     return bd.equilibrium(scene, speed, branch, discretization)
 
@@ -69,7 +69,7 @@ def branches(
 
 
 _GROWING = "divergence", "flutter"  # statuses of unstable modes
-_PLAIN = "auto: the plain beam; the limits belong to linear theory, and nothing is added."
+_PLAIN = "auto: add the effects whose size exceeds the tolerance, except large deflection and stretch."
 PlainPhysics = Annotated[Physics, Parameter(help=_PLAIN)]
 
 

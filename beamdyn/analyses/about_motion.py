@@ -56,7 +56,8 @@ def resonances(
     top_speed
         Largest speed to search, with its unit, e.g. "150 rad/s".
     order
-        1: resonances with the load; more: also combination resonances by the periodic coefficients.
+        1: resonances excited by the load; more: also combination resonances caused by periodic
+        coefficients of the equations.
     """
     return bd.resonance_speeds(scene, top_speed, modes, order, discretization)
 
@@ -78,7 +79,7 @@ def steady(
         Speeds with their unit: start:stop:count, e.g. "1:150:1000 rad/s", or a list, e.g. "50, 55
         rad/s".
     tolerance
-        Largest error due to omitted harmonics, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of the amplitudes of all harmonics.
     """
     result = bd.steady_response(scene, speeds, modes, tolerance=tolerance, discretization=discretization)
     none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
@@ -94,7 +95,7 @@ _FEW_SPEEDS, _ROUGH = 11, 1e-2  # number of speeds, and tolerance, of a prelimin
 def _harvest_sooner(
     scene: bd.Scene, speeds: np.ndarray, road: str | None = None, highest: str | None = None, **options: Any
 ) -> Result:
-    """Compute what is harvested at few of the speeds, without its error, as a preliminary answer."""
+    """Compute the harvested power at a few of the speeds, without its error, as a preliminary result."""
     given = {"modes": "auto", "discretization": "ritz", **options, "tolerance": _ROUGH}
     few = speeds[evenly_spread(len(speeds), _FEW_SPEEDS)]
     return harvested(scene, speeds=few, road=_roughness(road, highest), compared=False, **given)
@@ -130,7 +131,7 @@ def harvest(
     highest
         Highest spatial frequency of this random road; default: 2.83 1/m, as in the standard.
     tolerance
-        Largest error due to omitted harmonics, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of the amplitudes of all harmonics.
     """
     result = bd.harvest(scene, speeds, modes, tolerance, discretization, _roughness(road, highest))
     none = f"there is no steady response {at_any(len(speeds), 'speed')}: {result.status[0]}"
@@ -148,7 +149,7 @@ def _roughness(road: str | None, highest: str | None) -> bd.RoadRoughness | None
 def _resistance_sooner(
     scene: bd.Scene, road: str | None = None, highest: str | None = None, **options: Any
 ) -> Result:
-    """Compute a few load resistances, as a preliminary result."""
+    """Search the best load resistance roughly, as a preliminary result."""
     given = {"discretization": "ritz", **options, "tolerance": _ROUGH, "road": _roughness(road, highest)}
     return sought(ROUGH, scene, **given)
 
@@ -179,7 +180,7 @@ def best_resistance(
     highest
         Highest spatial frequency of this random road; default: 2.83 1/m, as in the standard.
     tolerance
-        Largest error due to omitted harmonics, relative to the sum of all lines.
+        Largest error due to omitted harmonics, relative to the sum of the amplitudes of all harmonics.
     """
     return bd.best_resistance(scene, speed, modes, tolerance, discretization, _roughness(road, highest))
 

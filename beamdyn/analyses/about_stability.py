@@ -30,17 +30,15 @@ Varied = Annotated[
     tuple[str, ...],
     Parameter(
         help='A number and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; '
-        "give the option twice. Names are those of the file, or speed. Default: the frequency of what "
-        "pulsates, by a fifth either way, and its amplitude, up to twice as much.",
+        "give the option twice. Names are those of the file, or speed. Default: the pulsation frequency, "
+        "from 80 to 120 % of its value, and the amplitude, from 0 to twice its value.",
         negative="",
         consume_multiple=False,
         show_default=False,
     ),
 ]
 Workers = Annotated[_Workers, Parameter(help="Number of processes; the answer is the same for any.")]
-Store = Annotated[
-    Folder, Parameter(help="Folder in which integrated scenes are kept; the same command resumes from it.")
-]
+Store = Annotated[Folder, Parameter(help="Folder for finished results; the same command resumes from there.")]
 
 
 @analysis(
@@ -109,7 +107,11 @@ def stability_limits(
 def _varied(
     scene: bd.Scene, vary: tuple[str, ...]
 ) -> tuple[bd.Scene, dict[str, np.ndarray], dict[str, tuple[str, float]]]:
-    """Return the scene in the unit of a given speed, the two varied inputs with values, and their units."""
+    """Read the two varied inputs of a stability chart.
+
+    Return the scene, displayed in the unit of a speed that is varied, the inputs' values [SI], and the units
+    in which they were given.
+    """
     if not vary:
         return scene, _about(scene), {}
     if len(vary) != 2:

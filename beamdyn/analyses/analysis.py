@@ -37,7 +37,7 @@ Physics = Annotated[
 
 
 class Mark(Enum):
-    """The role of an option: an output file, a second input file, or a choice for a picture."""
+    """The role of an option: an output file, a choice of what a picture shows, or a second input file."""
 
     WRITTEN = auto()
     DRAWN = auto()

@@ -145,7 +145,10 @@ def parse_speeds(text: str, scene: bd.Scene | None = None) -> np.ndarray:
 
 
 def parse_amounts(option: str, text: str, of: str | Quantity, example: str) -> tuple[list[float], list[str]]:
-    """Read a list of numbers with a unit at its end, such as "62.1, 389 Hz": return values, and texts."""
+    """Read a list of numbers with a unit at its end, such as "62.1, 389 Hz".
+
+    Return the values, in SI units, and the numbers as written.
+    """
     found = _UNIT.search(text.strip())
     values = [value for (value,) in _tuples(option, text, 1, example, of)]
     return values, [part.strip() for part in text.strip()[: found.start() if found else None].split(",")]

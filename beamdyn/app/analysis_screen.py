@@ -32,7 +32,7 @@ from beamdyn.common.screens.screens import Screen
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_FEW_MODES = 6  # modes of a preliminary result, if the tolerance chooses the number otherwise
+_FEW_MODES = 6  # number of modes of a preliminary result, if that of the full result follows from a tolerance
 _HEADLINES = 3  # largest number of parts of a result's one-line summary that a screen shows
 _NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
 _OF_COMMANDS = (
@@ -83,7 +83,7 @@ def analysis_screen(analysis: Analysis) -> Screen:
 
 
 def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
-    """Draw the picture of a result without notes, which files have but the page shows separately."""
+    """Draw the picture of a result, without notes below it, which the page shows separately."""
     result: Any = answer.result
     if narrow:
         own = hasattr(result, "picture_size")  # a picture with several panels chooses its own size
@@ -96,7 +96,7 @@ def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
 
 
 def first_entries(analysis: Analysis) -> dict[str, str]:
-    """Return the initial field texts of a form: the stated ones, or the options of the first example."""
+    """Return the initial field texts of a form: from `opens_with`, or from the first example."""
     name, words = analysis.function.__name__, analysis.opens_with or shlex.split(analysis.examples[0])
     given: dict[str, str] = {}
     for word, text in pairwise(words):
@@ -107,7 +107,7 @@ def first_entries(analysis: Analysis) -> dict[str, str]:
 
 
 def _section(analysis: Analysis) -> type[Section]:
-    """Make the form table for an analysis' options, also grouped ones: numbers, texts, choices; no files."""
+    """Make the class of the form fields for an analysis' options, also grouped ones; no fields for files."""
     fields: dict[str, Any] = {}
     for name, option in analysis.shown.items():
         if group := _group_of(option.annotation):

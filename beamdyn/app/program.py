@@ -1,4 +1,4 @@
-"""The program that the command ``beamdyn app`` runs: its documents and their screens."""
+"""The program that the command ``beamdyn app`` runs: its kinds of input files, each with its screens."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from beamdyn.files.scene_inputs import with_physics_as_table
 from beamdyn.files.scenes import parse_scene
 
 SHOWN = [*(analysis for analysis in analyses().values() if analysis.screen), campbell]
-# Example files of documents with their own initial scene, by name.
+# Example files with which the documents other than "scene" open, by name of the document.
 _BASES = {"harvester": "bimorph.toml", "periodic motion": "pulsating_wheel.toml"}
 _ASIDE = {
     "options.top_speed": "150 rad/s",
@@ -53,7 +53,11 @@ def _on(base: str) -> list[Analysis]:
 def _scene(
     name: str, base: str, shown: Sequence[Analysis], aside: Mapping[str, str], *special: Screen
 ) -> Document:
-    """Make the document for a scene, with special screens and with screens made from analyses."""
+    """Make a `Document` for scenes, which opens with the file text `base`.
+
+    Its screens are the `special` ones and those made from the analyses `shown`; `aside` contains initial
+    texts of form fields that are not part of the scene file.
+    """
     of_analyses = (first_entries(each).items() for each in shown)
     aside = {**aside, **{path: text for entries in of_analyses for path, text in entries}}
     elsewhere = {*ASIDE} - {*map(table_of, aside)}

@@ -54,7 +54,7 @@ PRESETS = (
     ),
 )
 # Advice on computations that take long.
-EFFORT = "It takes longer at higher speeds, with more modes, and of a beam that varies much along its length."
+EFFORT = "It takes longer at higher speeds, with more modes, and if the beam varies much along its length."
 # Inputs that are lists of tables, with their meanings.
 _LISTS = {
     "beam.point_mass": 'point masses, each such as { position = "20 mm", mass = "1 g" }',
@@ -165,9 +165,9 @@ def read_at_speed(tables: Mapping[str, Any]) -> tuple[Scene, float, int]:
 def _read_with_speed(tables: Mapping[str, Any], table: str, key: str) -> tuple[Scene, float, int]:
     """Read a scene, a speed [rad/s] and the number of modes.
 
-    Results are shown in the unit of this speed, unless it is the usual unit.  A speed whose computation would
-    take minutes is an error: the faster the beam rotates, the more functions each mode needs.  The limit
-    depends on the stiffness of the beam, not on the stiffness of the root, which may be a hinge.
+    Results are shown in the unit of this speed, unless it is rad/s.  A speed whose computation would take
+    minutes is an error: the faster the beam rotates, the more functions each mode needs.  The limit depends
+    on the stiffness of the beam, not on the stiffness of the root, which may be a hinge.
     """
     speed, modes = getattr(read_aside(tables, table), key), read_aside(tables, "options").modes
     scene = read_scene(tables)

@@ -136,6 +136,6 @@ def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> Rendera
 
 
 def bar(change: float) -> str:
-    """Return a bar of characters, whose length is the number of decades of a change above 1e-6."""
+    """Return a bar of block characters, three for each decade of a change above 1e-6."""
     decades = np.log10(abs(change) / _LEAST) if change else 0.0
     return _BAR * int(np.ceil(_DECADE * min(max(decades, 0.0), _LONGEST)))

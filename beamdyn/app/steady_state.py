@@ -104,7 +104,7 @@ STEADY_STATE = scene_screen(
     "Steady response",
     "Largest deflection of the tip over speed, after the transient of the start has decayed.",
     solve,
-    left_out_of="amplitude, at the speeds where that is judged",
+    left_out_of="amplitude, at a few of the speeds",
     sweeps=sweeps_of(steady_outputs, "beam.thickness=0.2:0.3:21 mm", "amplitude"),
     headline=headline,
     charts=chart,

@@ -1,4 +1,4 @@
-"""The screen on accuracy and cost: computing time for correct digits, and the cheapest model."""
+"""The screen on accuracy and cost: computing time per number of correct digits, and the cheapest model."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _FOLLOWS = "follows"
 _LATER = Diagram.make(_FOLLOWS, "", "", 0.0, ())
 _KEPT = 8  # largest number of scenes whose measurements are stored
 _LARGEST, _LEAST = 1.0, 1e-14  # largest and smallest relative error shown
-_ROUNDING = 1e-9  # relative rounding error of a power of ten
+_SAME = 1e-9  # relative difference below which two errors, both powers of ten, count as equal
 # Names of families of models on the screen, if they differ from the names in Python.
 _FAMILIES = {"tolerance=": "chosen by tolerance"}
 
@@ -79,7 +79,7 @@ class Trade:
 
     def cheapest(self, diagram: Diagram) -> Digit | None:
         """Return the fastest measurement with the requested number of digits; None if there is none."""
-        each = (d for d in diagram.per_digit if abs(d.error / self.tolerance - 1) < _ROUNDING)
+        each = (d for d in diagram.per_digit if abs(d.error / self.tolerance - 1) < _SAME)
         return next(each, None)
 
 
@@ -119,7 +119,7 @@ def _measure(scene: Scene, speed: float, modes: int) -> tuple[Diagram, Diagram]:
 
 def charts(answer: Trade, _: float = 0.0) -> Sequence[Chart]:
     """Make charts of error over computing time: numerical error, and total error with the model error."""
-    each = (answer.numerical, "Error of the numbers"), (answer.of_physics, "Error with that of the model")
+    each = (answer.numerical, "Numerical error"), (answer.of_physics, "Total error, with the model error")
     return [_chart(answer, d, name) for d, name in each if d.measurements or d.title == _LATER.title]
 
 
@@ -162,13 +162,14 @@ def tables(answer: Trade) -> Sequence[RenderableType]:
     """Make tables of the chosen model, the cheapest model per number of digits, and neglected effects."""
     numbers, physics = answer.cheapest(answer.numerical), answer.cheapest(answer.of_physics)
     n = f"{answer.digits} digit{'s' * (answer.digits > 1)}"
-    found = "nothing measured keeps them" if numbers is None else _describe(numbers)
-    sentences, diagrams = [f"Cheapest numbers with {n} of this model: {found}."], [answer.numerical]
+    found = "no measured setting" if numbers is None else _describe(numbers)
+    sentences = [f"Cheapest with {n} correct, the model error not counted: {found}."]
+    diagrams = [answer.numerical]
     if answer.of_physics.measurements:
         least = say_size(min(m.error for m in answer.of_physics.measurements))
-        missed = f"nothing measured has them; the least error is {least}"
+        missed = f"no measured setting; the least error is {least}"
         found = missed if physics is None else _describe(physics)
-        sentences.append(f"Cheapest with {n} in all, the physics included: {found}.")
+        sentences.append(f"Cheapest with {n} correct, the model error included: {found}.")
         diagrams.append(answer.of_physics)
     effects = left_out_table(answer.modes.left_out_effects, "frequencies")
     return [_chosen_table(answer), *sentences, effects, *map(diagram_table, diagrams)]
@@ -186,13 +187,13 @@ def _chosen_table(answer: Trade) -> RenderableType:
     each = zip(modes.frequency, modes.error, modes.model_error.tolist(), strict=True)
     for i, (frequency, error, of_model) in enumerate(each, 1):
         if not error <= tolerance:
-            verdict = "the numbers miss the tolerance"
+            verdict = "the numerical error exceeds the tolerance"
         elif np.isnan(of_model):
-            verdict = "kept by the numbers; that of the model is not known"
+            verdict = "numerically correct; the model error is not known"
         elif of_model <= tolerance:
-            verdict = "kept"
+            verdict = "correct"
         else:
-            verdict = "kept by the numbers; the physics misses the tolerance"
+            verdict = "numerically correct; the model error exceeds the tolerance"
         rows.append((str(i), f"{frequency:.10g}", f"{error:.0e}", say_size(of_model), verdict))
     title = (
         f"At {modes.display_units.speed_unit().say(modes.speed)}, tolerance {tolerance:.0e}: "

@@ -50,7 +50,7 @@ def import_deck(
     hub_radius
         Distance of the root from the axis of rotation with its unit, where the file does not say it.
     polynomials
-        Write polynomials of the mode shapes into this file, in the lines of ElastoDyn's blade files.
+        Write polynomials of the mode shapes into this file, in the format of ElastoDyn's blade files.
     speed
         Rotational speed for these mode shapes, with its unit; default: that in the file, or 0.
     force

@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.common.results.statements import after
 
-REFUSED = "refused"  # status of a design without a result
+REFUSED = "refused"  # status of a design whose computation failed or raised an error
 NO_ANSWERS = (
     *(REFUSED, "failed", "not found", "divergence", "flutter"),
     *("parametric instability", "past the critical speed", "turns freely about the root"),
@@ -24,9 +24,9 @@ class Caution:
     Parameters
     ----------
     kind : str
-        Subject; warnings of one kind are merged.
+        Key of the subject, such as "a"; warnings of one kind are merged, and kinds are sorted by their keys.
     count : int
-        Number of designs.
+        Number of pairs of a design and a speed that the warning concerns.
     weight : float
         Severity, by which the worst of the warnings of one kind is chosen.
     said : str
@@ -131,7 +131,7 @@ class AnswerArrays:
 
 
 def caution_where(which: Any, kind: str, size: np.ndarray | float, said: str) -> Iterable[Caution]:
-    """Build a warning about the selected designs and speeds, with the largest `size` among them.
+    """Yield a warning about the selected designs and speeds; its weight is the largest `size` among them.
 
     Nothing is yielded if no design is selected.
     """

@@ -31,7 +31,8 @@ from beamdyn.scene.validity import LARGE_DEFLECTION, LARGE_STRAIN, warn_of_stati
 from beamdyn.studies.answers import REFUSED, Caution, DesignAnswers, caution_where
 from beamdyn.studies.similar import PencilFamily, SimilarDesigns
 
-# Error target for beams with a tip body: with a larger one, bases miss modes with thin boundary layers.
+# Relative error to be reached for beams with a tip body: bases that suffice for a larger error miss modes
+# with thin boundary layers.
 _WITH_TIP_BODY = 1e-7
 # Largest number of matrix entries solved in one batch, so that they fit into the processor's cache.
 _ENTRIES = 300_000
@@ -79,7 +80,7 @@ class Refinement:
     tolerance: float | None
 
     def bases(self) -> Iterator[Discretization]:
-        """Return the bases to try, from coarse to fine."""
+        """Return the bases to try, by increasing number of functions."""
         cheapest = self.tolerance is not None and self.reference.beam.tip is None
         models = list_models(self.reference, self.discretization, self.modes, self._target, cheapest)
         return (model.discretization for model in models)
@@ -91,7 +92,10 @@ class Refinement:
         return target if self.reference.beam.tip is None else min(target, _WITH_TIP_BODY)
 
     def target_of(self, basis: Discretization) -> float:
-        """Return the relative error required in a basis: the target, or rounding if that is larger."""
+        """Return the largest relative error accepted for a basis: the target; for moment bases, more.
+
+        Moment bases, whose estimated errors are too large, need not meet a target below 1e-10.
+        """
         return within_reach(basis, self._target)
 
     @property
@@ -100,14 +104,14 @@ class Refinement:
         return self.discretization == "ritz" or isinstance(self.discretization, Ritz)
 
     def solve(self, count: int, speeds: int, solve: Solve) -> tuple[list[np.ndarray], int]:
-        """Solve designs at several speeds each, in finer and finer bases until all meet the target.
+        """Solve designs at several speeds each, in larger and larger bases until all meet the target.
 
         Returns
         -------
         answers : list of ndarray, shape (designs, ...)
             Results of each design in the last basis that gives any; nan if none does.
         functions : int
-            Largest number of functions that was needed.
+            Largest number of basis functions that was used.
         """
         bases, answers, functions = self.bases(), list[np.ndarray](), 0
 
@@ -139,7 +143,7 @@ class Refinement:
 def _solve_or_halve(
     solve: Solve, batch: np.ndarray, basis: Discretization
 ) -> Iterator[tuple[np.ndarray, BasisAnswers]]:
-    """Yield solved designs.
+    """Solve a batch of designs; yield parts of the batch and their results.
 
     Designs whose matrices are singular by rounding are omitted; they are found by halving batches.
     """
@@ -176,7 +180,7 @@ class SolvedDesigns:
         Magnitude of the static tip deflection by rotation, over the length; nan at and above the critical
         speed.
     functions : int
-        Largest number of functions that was needed.
+        Largest number of basis functions that was used.
     """
 
     eigenvalue: np.ndarray
@@ -262,7 +266,7 @@ def _cautions_of_theory(
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
-    """Build a warning about designs of which a result is missing, by `status`, because of rounding.
+    """Make a warning about designs without a result, by `status`, because of rounding errors.
 
     Nothing is yielded if all designs have a result.
     """
@@ -282,7 +286,10 @@ def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Ca
 def stacks_of(
     designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
 ) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
-    """Return the matrices of designs in a basis and in the coarser one, their `PencilFamily`, and weights."""
+    """Return the matrices of designs in a basis and in the coarser one, the `PencilFamily`, and weights.
+
+    The weights interpolate the matrices of the family.
+    """
     family, weights = designs.family(basis), designs.weights(rows)
     stack = family.stack(weights)
     if family.coarse is not None:
@@ -374,7 +381,7 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Return whether the form F of `beamdyn.modes.buckling` is positive without its first integral: (N,).
+    """Return where F of `beamdyn.modes.buckling`, whose sign decides on buckling, is surely positive: (N,).
 
     Parameters
     ----------
@@ -383,7 +390,7 @@ def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray
     cos2 : ndarray
         Squared cosine of the angle between the bending direction and the plane of rotation.
     tilting : ndarray
-        Difference J_e - J_1 of the tip body's moments of inertia [kg m2].
+        Transverse minus axial moment of inertia of the tip body [kg m2].
     """
     L, a, sin2 = designs.reference.beam.length, designs.axial, 1 - cos2
     m, eps = designs.tip["mass"], designs.tip["offset"]

@@ -34,7 +34,10 @@ _MOST_EXTREMES = 4  # largest number of inputs of which all combinations of extr
 
 
 def line_key(kind: str, line: Line) -> tuple[str, float]:
-    """Return a sort key for a line of a kind; lines whose multiples differ by rounding share a key."""
+    """Return a sort key for an excitation line; lines whose multiples differ by rounding share a key.
+
+    The kind is "forced" or "parametric".
+    """
     return kind, round(line.multiple, 9)
 
 

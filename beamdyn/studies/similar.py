@@ -7,14 +7,15 @@ offset and radius by s_L, root springs are multiplied by s_L/s_k, and the speed 
     T = sqrt(s_m s_L^4 / s_k);
 
 the frequencies of the reference, divided by T, are those of the beams.  The reference's matrices are
-polynomials of few quantities.  In one plane of bending they are linear in the mass of the body, its inertia
-J_n, (J_e - J_1)/J_n, in r cos(phi), in the squared cosine of the bending angle and in the spring, quadratic
-in the offset.  In two planes they are linear in the moments of inertia, in the springs, and in the stiffness
-in the second direction over that in the first, and combinations of 1, cos(2 psi) and sin(2 psi) of the
-bending angle psi.  They are interpolated between the extremes of all designs.  Every combination of extremes
-must be a valid scene, but a moment of inertia could then exceed the sum of the other two.  So the tip body's
-second moments of mass are combined instead: moments of inertia are sums of two of them, and any nonnegative
-values belong to a possible body.
+polynomials of few quantities.  In one plane of bending they are linear in the mass of the body, in its moment
+of inertia J_n about the axis of bending, in (J_e - J_1)/J_n with its transverse and axial moments of inertia
+J_e and J_1, in r cos(phi) of radius and setting angle, in the squared cosine of the bending angle and in the
+spring, quadratic in the offset.  In two planes they are linear in the moments of inertia, in the springs, and
+in the stiffness in the second direction over that in the first, and combinations of 1, cos(2 psi) and
+sin(2 psi) of the bending angle psi.  They are interpolated between the extremes of all designs.  Every
+combination of extremes must be a valid scene, but a moment of inertia could then exceed the sum of the other
+two.  So the tip body's second moments of mass are combined instead: moments of inertia are sums of two of
+them, and any nonnegative values belong to a possible body.
 
 In shapes of arrays, N counts designs, S speeds, R selected designs, and T scenes at combinations of extremes.
 """
@@ -79,7 +80,7 @@ _DEGREES = {
 _ANGLES = np.array([0.0, 1.0, 2.0]) * math.pi / 3  # nodes of the trigonometric interpolation [rad]
 _MOST_NODES = 512  # largest number of scenes to be assembled, which takes some seconds
 _NODES_EACH = 8  # largest number of assembled scenes per result: with more, single analyses are as fast
-# Ratios of rounding errors to those of a clamped beam in one plane, as for single scenes.
+# Ratios of rounding errors, on root springs and in two planes, to those of a clamped beam in one plane.
 _ROUNDING_ON_SPRINGS, _ROUNDING_OF_PLANES = 2.0, 3.0
 
 Nodes = tuple[tuple[str, tuple[float, ...]], ...]
@@ -130,7 +131,7 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Compute ratios of mass per length (0) or a stiffness (1, 2, 3) to the first: see `POWERS`."""
+        """Compute ratios of mass per length (0) or a stiffness (1, 2, 3) to the reference's: see `POWERS`."""
         scale = np.ones(self.count)
         for name, powers in POWERS.items():
             if name in self.columns:
@@ -203,7 +204,7 @@ class SimilarDesigns(FieldsOnly):
             return common | {"inertia": tip["inertia"], "tilt": self.tilt, "in_plane": self.in_plane}
         if np.isfinite(spring := springs["second_root_stiffness"]).all():
             common["second_spring"] = spring
-        # Second moments of mass of the tip body: along the beam, along bending and along its axis [kg m2].
+        # Second moments of mass of the tip body [kg m2] along beam, bending direction and axis of bending.
         n, e, one = (self.tip[name] for name in ("inertia", "transverse_inertia", "axial_inertia"))
         twice = {"along_beam": n + e - one, "along_bending": n + one - e, "along_axis": e + one - n}
         common |= {name: np.maximum(v / 2, 0.0) for name, v in twice.items()}
@@ -225,7 +226,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def across(self) -> np.ndarray:
-        """Acceleration of the root across the beam, over squared speed [m], along e1 and e2, (N, planes)."""
+        """Acceleration of the root across the beam, over squared speed [m], in each plane: (N, planes)."""
         size = self._radius * _cos(self._of_mount("setting_angle") - math.pi / 2, ROUNDED_ANGLE)
         angle = self._of_mount("bending_angle")
         each = (_cos(angle), -_cos(angle - math.pi / 2))[: self._planes]
@@ -300,7 +301,7 @@ class PencilFamily:
     K0 : ndarray, shape (coordinates, coordinates) or (T, coordinates, coordinates)
         Stiffness at rest, common to all node scenes or one for each.
     M, K2 : ndarray, shape (T, coordinates, coordinates)
-        Mass, and stiffness divided by the squared speed.
+        Mass, and the part of the stiffness due to rotation, divided by the squared speed.
     loads : ndarray, shape (T, d, coordinates)
         Loads under a unit acceleration of the root in the d directions of bending.
     tips : ndarray, shape (d, coordinates)

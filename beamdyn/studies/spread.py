@@ -98,8 +98,9 @@ def _said(refusal: ValueError) -> tuple[str, ...]:
 class SceneSpread(Spread, StatesModelError):
     """Ranges of k results of a scene over the tolerances of d inputs.
 
-    The fields are as in `Spread`.  `model_error` (k,) and `left_out`, computed at their first use, estimate
-    how much neglected physical effects change the results of the nominal design.
+    The fields are as in `Spread`.  `left_out` contains the estimated relative change of each result of the
+    nominal design by each neglected physical effect, `model_error` (k,) the magnitude of the sum of these
+    changes; both are computed at first use.
     """
 
     question: StudyQuestion = field(repr=False)

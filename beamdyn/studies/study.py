@@ -68,13 +68,13 @@ def study(
 
     For frequencies, critical speeds and resonance speeds of slender beams, all designs are represented by one
     reference beam with different tip bodies, springs, radii, angles and speeds, and solved in one basis by
-    batched eigenproblems.  All other results are computed design by design; amplitudes and peaks over all
-    speeds at once.  Both ways give the results of single analyses, within the stated errors.
+    batched eigenproblems.  All other results are computed design by design; those of motions over all speeds
+    at once.  Both ways give the results of single analyses, within the stated errors.
 
     Parameters
     ----------
     scene : Scene
-        The scene; its motion is used for crossings, amplitudes and peaks.
+        The scene; its motion is used for crossings, amplitudes, peaks, strains and power.
     vary : mapping of str to sequence of float
         Values in SI of each input, by its name in scene files: "beam.thickness", "beam.tip.mass",
         "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; for
@@ -87,8 +87,8 @@ def study(
         of a transient from rest; the largest strain along the span in steady motion (of the layers, if the
         beam carries a harvester); or the mean power of the harvester.
     speed : float, optional
-        Speed of frequencies, amplitudes and peaks if it is not varied, and top speed of crossings [rad/s]; by
-        default 0 for frequencies, otherwise the final speed of the motion.
+        Speed of frequencies, amplitudes, peaks, strains and power if it is not varied, and top speed of
+        crossings [rad/s]; by default 0 for frequencies, otherwise the final speed of the motion.
     modes : int, optional
         Number of modes of frequencies and crossings; 3 if not given.
     window : tuple of float, optional
@@ -97,7 +97,8 @@ def study(
     combine : {"product", "zip"}
         Combine each value with each of the other inputs, or take the first of all, the second of all, ...
     discretization, tolerance
-        As for `natural_modes`; the tolerance of amplitudes and peaks as for `steady_response` and `sweep`.
+        As for `natural_modes`; the tolerance of amplitudes, strains and power as for `steady_response`, that
+        of peaks as for `sweep`.
     workers : int
         Number of processes; the result is bitwise the same for any number.
     executor : Executor, optional
@@ -197,7 +198,8 @@ def _check_inputs(vary: Any) -> tuple[VariedInput, ...]:
 def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -> float:
     """Return the speed [rad/s] of designs that do not vary it.
 
-    Raise an error if a speed is given for a result that does not depend on it.
+    Raise an error if the speed is varied for a result that does not depend on it, or if the scene lacks a
+    motion that the result needs.
 
     Parameters
     ----------
@@ -234,7 +236,7 @@ def check_window(window: tuple[float, float]) -> tuple[float, float]:
 
 
 def _check_scenes(scene: Scene, designs: Designs) -> None:
-    """Check that all designs are valid scenes, by extreme values: bounds are monotone in each input."""
+    """Raise an error unless all designs are valid scenes; of few inputs, only extreme values are tried."""
     few = len(designs.inputs) <= _MOST_CORNERS
     try:
         for design in designs.extremes() if few else ():

@@ -39,9 +39,10 @@ class Study(SceneResult, StatesModelError):
     """Results over combinations of inputs; computed by `study`.
 
     The shape (n1, ..., nd) has an axis for each input, in order, or one axis for all inputs that are varied
-    together. `error` is the numerical error.  `model_error` (p, m) and `left_out`, computed at their first
-    use, estimate the changes by neglected physical effects at the p designs of `left_out_places`;
-    `left_out_at` does so for any design.
+    together. `error` is the numerical error.  `left_out` contains the estimated relative change of each
+    result by each neglected physical effect, at the p designs of `left_out_places`, `model_error` (p, m) the
+    magnitude of the sum of these changes; both are computed at first use.  `left_out_at` computes the changes
+    for any design.
 
     Parameters
     ----------
@@ -68,7 +69,7 @@ class Study(SceneResult, StatesModelError):
         for a resonance "resonates", "none up to the top speed" or "not excited"; for a response as in
         `steady_response`; for a peak "done" or "failed"; "refused" if there is no result.
     warnings : tuple of str
-        Limitations of the results, with the number of designs for which each holds.
+        Warnings about the validity and accuracy of the results, with the number of designs concerned.
     provenance : Provenance
         How the result was computed.
     typed_units : mapping
@@ -145,8 +146,8 @@ class Study(SceneResult, StatesModelError):
     def left_out_places(self) -> tuple[tuple[int, ...], ...]:
         """Indices of the designs at which the model error is computed: p tuples (i1, ..., id).
 
-        These are the extremes of the inputs and other evenly spread designs; for amplitudes and peaks, which
-        take long to compute, only the design with the largest result.
+        These are the extremes of the inputs and other evenly spread designs; for results that need a motion
+        and take long to compute, only the design with the largest result.
         """
         if self.question.kind.needs_motion:
             at = [np.nanargmax(self.value)] if np.isfinite(self.value).any() else []

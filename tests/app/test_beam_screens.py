@@ -306,7 +306,7 @@ def test_cheapest_model_keeps_the_digits_and_nothing_cheaper_does():
 def test_digits_that_the_physics_does_not_have_are_said_to_be_missing():
     answer = solved(TRADE, **{"trade.digits": "9"})
     said = html(TRADE.tables(answer))
-    assert "the physics misses the tolerance" in said
+    assert "the model error exceeds the tolerance" in said
     (numbers, _) = TRADE.charts(answer, 0.0)
     assert curve(numbers, "tolerance 1e-09").y.tolist() == [1e-9, 1e-9]
     assert curve(numbers, "chosen by tolerance").points  # not as it is called in Python

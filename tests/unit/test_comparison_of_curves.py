@@ -75,7 +75,7 @@ def test_digits_that_agree_are_no_deviation():
 
 def test_a_value_beside_none_is_no_infinite_deviation():
     found = bd.compare(PLAIN, bd.MeasuredLoads([0.0, 0.02], [1.0, 0.5], ["moment"], 50.0))
-    assert "beside none in the model" in found.sentences()[0]
+    assert "but 0 in the model" in found.sentences()[0]
     assert "inf" not in " ".join(found.sentences())
 
 

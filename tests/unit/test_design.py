@@ -264,7 +264,7 @@ def test_wrong_targets_are_refused():
         with pytest.raises(ValueError, match=said):
             bd.Target("frequencies", **wrong)
     best = bd.Target("frequencies", best="largest")
-    with pytest.raises(ValueError, match="one answer alone"):
+    with pytest.raises(ValueError, match="only one answer can be"):
         bd.design(INWARD, THICKNESS, [best, best])
 
 

@@ -18,9 +18,10 @@ from beamdyn.modes.model_error.left_out_effects import LARGE_MODEL_ERROR, States
 
 
 def warnings_of(result: Any, tolerance: float | None = None, without: str = "") -> list[str]:
-    """Return a result's warnings, also of a model error above a tolerance or 1 %, in words of files.
+    """Return a result's warnings, with inputs named as in files.
 
-    Warnings of the kind `without` are omitted.
+    If the model error exceeds the tolerance, or 1 % without one, a warning says so.  Warnings of the kind
+    `without` are omitted.
     """
     warnings = (*getattr(result, "warnings", ()), *_of_model_error(result, tolerance))
     said = (each for each in warnings if not without or kind_of(each) != without)

@@ -19,11 +19,11 @@ from beamdyn.studies.beside_data.curve_comparison import say
 from beamdyn.studies.beside_data.single_numbers import say_value
 from beamdyn.studies.designing.target import say_number
 
-_DIGITS = 6  # most digits of computed frequencies, as in sentences
+_DIGITS = 6  # largest number of digits of a computed frequency
 
 
 def comparison_columns(result: bd.FrequencyComparison) -> Columns:
-    """Make columns with one row per measured frequency: computed value, deviation, and verdict."""
+    """Make columns with one row per measured frequency: computed value, deviation, and whether they agree."""
     computed = result.computed
     relative = (("uncertainty", result.allowance), ("model error", result.model_error))
     said = [_percents(each / np.where(np.isnan(computed), result.measured, computed)) for _, each in relative]
@@ -86,7 +86,7 @@ def comparison_csv(result: bd.FrequencyComparison) -> Columns:
 
 
 def curve_columns(result: bd.CurveComparison) -> Columns:
-    """Make columns with one row per curve: largest values, deviations, uncertainty and verdict."""
+    """Make columns with one row per curve: largest values, deviations, and whether the curves agree."""
     units = result.unit
 
     def sizes(values: np.ndarray) -> list[str]:
@@ -173,7 +173,7 @@ def numbers_csv(result: bd.Identification | bd.FoundDesign) -> Columns:
 
 
 def design_tables(result: bd.FoundDesign) -> Group:
-    """Make tables of the design variables, of targets and results, and of the limits of the design."""
+    """Make tables of the design variables, and of targets and results, with sentences on the design."""
 
     def said(value: float, unit: str) -> str:
         return "-" if np.isnan(value) else in_files(say_number(value, unit), result.display_units)

@@ -17,7 +17,7 @@ from beamdyn.common.words import supported
 
 _MOST_PEAKS = 8  # largest number of peaks in a table
 _NO_WIDTH = "-"  # text in a table for a peak without a width
-_DIGITS, _DIGITS_OF_WIDTH = 8, 4  # most digits of a response, and of the width of a peak
+_DIGITS, _DIGITS_OF_WIDTH = 8, 4  # largest number of digits of a response, and of the width of a peak
 _MATRICES = ("mass", "damping", "gyroscopic", "stiffness", "stiffness_by_axial_acceleration", "input_matrix")
 _PAIRS = 6  # number of pole pairs whose errors are listed
 

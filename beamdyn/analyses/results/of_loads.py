@@ -160,8 +160,9 @@ def random_loads_table(result: bd.RandomLoads) -> Group:
 
 
 _ESTIMATE = (
-    "Estimates for a Gaussian input; passages of both signs count as independent, with the root mean square "
-    "at the angle of rotation at which it is largest, and all parts add up: rather high."
+    "Estimates for a Gaussian input, rather too high: positive and negative peaks count as independent, the "
+    "root mean square is that at the angle of rotation at which it is largest, and the constant part, "
+    "gravity and the random part are added."
 )
 
 

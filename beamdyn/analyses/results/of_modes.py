@@ -25,12 +25,12 @@ if TYPE_CHECKING:
     from beamdyn.common.results.result import Result
 
 Cell: TypeAlias = "str | Text"  # type of a table cell: plain or styled text
-# Most evenly spaced rows of a printed table; rows of peaks and changes of status are added.
+# Largest number of evenly spaced rows of a printed table; rows of peaks and changes of status are added.
 _MOST_ROWS = 16
 _ROUNDING = 1e-9  # relative model error below which it counts as a rounding error
-_CRITICAL_DIGITS = 12  # most digits of a critical speed
+_CRITICAL_DIGITS = 12  # largest number of digits of a critical speed
 _FEW = 4  # largest number of modes over speed for which frequencies are shown with all digits
-# Most digits of a frequency over speed: for few modes, and for more modes.
+# Largest number of digits of a frequency over speed: for few modes, and for more modes.
 _DIGITS, _DIGITS_OF_MANY = 10, 7
 _AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the bending direction, and across
 
@@ -39,7 +39,7 @@ _AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the bending directio
 
 
 def said_of_model(result: Result, sentence: str) -> str:
-    """Return a sentence on the model of a result, with the names and units of files."""
+    """Return a sentence on the model of a result, with inputs named as in files and the result's units."""
     return in_files(sentence, result.display_units)
 
 
@@ -248,7 +248,7 @@ def critical_csv(result: bd.CriticalPoint) -> Columns:
 
 
 def limits_columns(result: bd.SettingAngleLimits) -> Columns:
-    """Make columns of both limits of the setting angle with errors, and of the second one's top speed."""
+    """Make columns of both limits of the setting angle with their error, and of the top speed."""
     top = result.display_units.speed_unit().say(result.top_speed, 10)
     return Columns(
         Column("limit", ("first", "second")),
@@ -262,7 +262,7 @@ def limits_columns(result: bd.SettingAngleLimits) -> Columns:
 
 
 def bounds_columns(result: bd.FrequencyBounds) -> Columns:
-    """Make columns of the lower and upper bound of each frequency, and of how each is guaranteed."""
+    """Make columns of the lower and upper bound of each frequency; a note says why they are guaranteed."""
     count = len(result.lower)
     return Columns(
         Column("mode", range(1, count + 1)),

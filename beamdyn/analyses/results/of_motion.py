@@ -22,7 +22,7 @@ from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions, words_of_directions
 from beamdyn.scene.motion import RollingWheel
 
-_DIGITS = 6  # most digits of a deflection that the modal truncation error allows
+_DIGITS = 6  # largest number of digits of a deflection, which has a modal truncation error
 # Relative error that is assumed for a deflection whose error is not estimated.
 _ASSUMED_ERROR = 5e-4
 _WHERE_COMPUTED = "model_error_where_computed"
@@ -104,7 +104,7 @@ def transient_csv(run: bd.Transient) -> Columns:
 
 
 def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
-    """Make a table of columns at some speeds and at all peaks, which the status column names."""
+    """Make a table of columns at some speeds and at all peaks, which the status column marks."""
     shown, high = of_modes.rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
     states = [f"{result.status[s]}, peak" if s in high else str(result.status[s]) for s in shown.tolist()]
     status = Column("status", states)

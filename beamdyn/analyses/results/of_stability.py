@@ -23,7 +23,10 @@ _SI: Mapping[str, tuple[str, float]] = {}
 
 
 def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
-    """Make columns with one row per Floquet multiplier: size, angle, error, sign; else of the growth rate."""
+    """Make columns with one row per Floquet multiplier: magnitude, angle, error and Krein sign.
+
+    Without multipliers, make columns of the growth rate and its error.
+    """
     if not len(result.multipliers):
         rate, error = np.array([result.growth_rate]), np.array([result.growth_rate_error])
         return Columns(
@@ -90,7 +93,7 @@ def _where(status: np.ndarray, values: np.ndarray) -> str:
 
 
 def chart_columns(result: bd.StabilityChart) -> Columns:
-    """Make columns with one row per point: both inputs, verdict, growth rate and largest multiplier."""
+    """Make columns with one row per point: both inputs, status, growth rate and largest multiplier."""
     grids = np.meshgrid(*(each.values for each in result.inputs), indexing="ij")
     numbers = (
         column_named(name_in_heads(each.name), grid.ravel(), each.unit, words=each.name)
@@ -107,7 +110,7 @@ def chart_columns(result: bd.StabilityChart) -> Columns:
 
 
 def limit_columns(result: bd.StabilityLimits) -> Columns:
-    """Make columns with one row per point: curve, both inputs, error, and critical multiplier."""
+    """Make columns with one row per point: curve, both inputs, error, and multiplier on the unit circle."""
     numbers = (
         column_named(name_in_heads(each.name), values, each.unit, words=_words(each), form=".9g")
         for each, values in zip(result.chart.inputs, result.place.T, strict=True)

@@ -34,8 +34,8 @@ if TYPE_CHECKING:
     from beamdyn.studies.tradeoffs.measurements import Diagram
 
 _MOST_ROWS = 30  # largest number of rows in the table of a study
-_DIGITS = 10  # most digits of a speed or frequency
-# Most digits of a derivative, and of results in several columns.
+_DIGITS = 10  # largest number of digits of a speed or frequency
+# Largest number of digits of a derivative, and of results side by side in a table.
 _DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4
 _RPM = 30 / np.pi  # revolutions per minute in one rad/s
 # Relative distance of a frequency from its upper bound, below which it counts as close to the bound.

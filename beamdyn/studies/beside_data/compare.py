@@ -200,7 +200,7 @@ class _MeasuredRow:
 
     @cached_property
     def of_shapes(self) -> np.ndarray | None:
-        """Likeness (m, n) of m measured and n computed modes: by their shapes, else by kinds in labels."""
+        """Modal assurance criterion (m, n) of measured and computed modes; without shapes see `pairing`."""
         data, modes = self.data, self.modes
         if data.shapes is None:
             return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))
@@ -267,7 +267,8 @@ class _MeasuredRow:
             yield Words(f"mode {k + 1} of the scene, {frequency} at ", Speeds(self.data.speeds[self.row]))
 
 
-_UNITS: Mapping[str, tuple[float, str]] = {  # factor from the unit to hertz, and the name of the unit
+# Ratio of given to correct values, as a number and as text (the key), and the possible cause in words.
+_UNITS: Mapping[str, tuple[float, str]] = {
     "2 pi": (2 * pi, "in rad/s, and read as Hz"),
     "60": (60.0, "in 1/min, and read as Hz"),
     "1000": (1e3, "in mHz, or in Hz and read as kHz"),
@@ -287,7 +288,7 @@ def wrong_unit(
 
     The values divided by the factor are paired with modes again.  The statement is made if each then has a
     mode within 10 %, and if the scatter of the ratios of measured to computed values is less than half of
-    that before.
+    that without the factor.
 
     Parameters
     ----------

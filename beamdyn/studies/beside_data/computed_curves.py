@@ -24,7 +24,7 @@ from beamdyn.transient.simulate import Transient, simulate
 from beamdyn.transient.sweep import Sweep, sweep
 
 _DELAYS = 33  # number of trial delays, evenly spaced between the limits
-_COMPARED = 4000  # largest number of times at which histories are compared to find the delay
+_COMPARED = 4000  # largest number of instants at which histories are compared to find the delay
 _ROUNDING = 1e-9  # fraction of the length by which a position may be beyond the tip because of rounding
 _SHARP = 1e-9  # accuracy of a delay, relative to the period
 # A curve counts as inverted if the opposite sign reduces the sum of squares to at most this fraction.
@@ -42,7 +42,8 @@ _LOADS = {
 class ComputedCurves:
     """Computed curves as columns, their errors (which broadcast), their units, and the result they belong to.
 
-    `speed` is the speed of the computation [rad/s]; nan for curves over time or speed.
+    `speed` is the speed of the computation [rad/s], nan for curves over time or speed; `delay` [s] and
+    `phase` [rad] are as in `CurveComparison`.
     """
 
     value: np.ndarray
@@ -100,7 +101,7 @@ def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
         found = frequency_response(scene, speed, data.frequency, data.input, data.output)
     value = found.response
     if value.shape[1] != 1:
-        bound = "a turning beam answers it at two frequencies"
+        bound = "a rotating beam responds to it at two frequencies"
         raise InvalidValue(
             "input", data.input, bound, "give bending, across, n3 or a force that turns with it"
         )
@@ -157,7 +158,7 @@ def _period(scene: Scene, data: MeasuredHistory) -> float:
 
 
 def _curves(run: Transient, names: Sequence[str]) -> Iterator[tuple[Callable[[np.ndarray], Any], float]]:
-    """Yield, for each named quantity, a function from times to its values in a transient, and errors."""
+    """Yield, for each named quantity, a function from times to its values in a transient, and its error."""
     for name in names:
         k = int(name.endswith("across"))
         if name == "root strain":

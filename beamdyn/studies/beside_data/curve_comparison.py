@@ -1,4 +1,4 @@
-"""Comparison of measured histories, peaks, loads and responses with computed ones, with a verdict on each.
+"""Comparison of measured histories, peaks, loads and responses with computed ones, and whether each agrees.
 
 In shapes of arrays, C counts curves.
 """
@@ -49,13 +49,13 @@ class CurveComparison(SceneResult):
         The values [unit of the curve].  Computed histories are delayed by `delay`: at time x they have the
         values of x - delay.  Responses are complex if the phase was measured.
     allowance : ndarray, shape (n, C)
-        Possible error of the measured values [same unit]: half of the last digit, and twice the uncertainty.
+        Possible error of the measured values [same unit]: `rounding` plus twice the uncertainty.
     rounding : ndarray, shape (n, C)
-        Half of the last digit of the measured values alone [same unit].
+        Half a unit of the last digit of the measured values [same unit].
     error : ndarray, shape (n, C)
         Estimated numerical errors of the computed values [same unit].
     model_error : ndarray, shape (C,)
-        Model error: changes by neglected effects relative to the largest value, as far as known.
+        Magnitude of the sum of the known changes by neglected effects, relative to the largest value.
     speed : float
         Speed at which loads and responses were computed [rad/s]; nan for other curves.
     delay : float
@@ -64,7 +64,7 @@ class CurveComparison(SceneResult):
         Phase by which the measured curve leads [rad]: for a history from the delay, at its main frequency;
         for a response at its maximum; nan if it is not known.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the curves were computed.
 
@@ -139,17 +139,18 @@ class CurveComparison(SceneResult):
 
     @property
     def in_digits(self) -> np.ndarray:
-        """Whether curves differ, in peak and rms, by at most half of the last digit."""
+        """Whether curves differ, in peak and rms, by at most half a unit of the last measured digit."""
         half = self.rounding[self.places, np.arange(len(self.name))]
         within = _rms(self.measured - self.computed) <= _rms(self.rounding)
         return within & (np.abs(self.peak - self.computed_peak) <= half)
 
     @property
     def verdict(self) -> tuple[str, ...]:
-        """Verdict on each curve: "agrees", "within the model error", "outside" or "not known".
+        """Agreement of each curve: "agrees", "within the model error", "outside" or "not known".
 
-        Both the largest value and the root mean square of the difference must be within the bounds.  With a
-        model error larger than the curve, the verdict is "not known".
+        A curve agrees if the difference of the largest values, and the root mean square of the differences,
+        are at most `allowance` plus `error`; it is within the model error if this suffices together with the
+        model error.  With a model error larger than the curve, the agreement is "not known".
         """
         at = self.places, np.arange(len(self.name))
         off = np.array([np.abs(self.peak - self.computed_peak), _rms(self.measured - self.computed)])
@@ -165,7 +166,7 @@ class CurveComparison(SceneResult):
 
     @property
     def agrees(self) -> bool:
-        """Whether all curves agree within their uncertainty, half of their last digit and numerical error."""
+        """Whether all curves agree within `allowance` plus `error`."""
         return set(self.verdict) == {AGREES}
 
     def to_dict(self) -> dict[str, Any]:
@@ -194,7 +195,7 @@ class CurveComparison(SceneResult):
         """State how the largest value of curve k compares with the computed one."""
         deviation, computed = float(self.deviation[k]), say(self.computed_peak[k], self.unit[k])
         if np.isinf(deviation):
-            return ("beside none in the model",)
+            return ("but 0 in the model",)
         if abs(deviation) <= NOTHING:
             return "the same as ", computed
         return f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of ", computed

@@ -1,9 +1,10 @@
 """Bounded least squares on natural frequencies: residuals, their derivatives, and the search for the minimum.
 
 A residual is the difference of computed and measured frequency, divided by a weight [Hz].  Its derivatives
-follow from the eigenproblem, s' = -w^T dP v / (w^T (2 s M + C + omega G) v) (Lancaster 1966, section 7),
-where dP is the difference between the matrices of two nearly equal scenes.  So only matrices are differenced,
-not eigenvalues.
+follow from the eigenproblem, s' = -w^T dP v / (w^T (2 s M + C + omega G) v) (Lancaster 1966, section 7), for
+the eigenvalue s of the dynamic stiffness P(s) with its right and left eigenvectors v and w, where dP is the
+difference between the matrices of two nearly equal scenes.  So only matrices are differenced, not
+eigenvalues.
 
 In shapes of arrays, p counts variables, S speeds, n computed and m measured frequencies at each, and N pairs.
 """
@@ -87,19 +88,19 @@ class Fitting:
         return found.model.discretization
 
     def scene_at(self, x: Sequence[float] | np.ndarray) -> Scene:
-        """Return the scene with the values of the free numbers that belong to variables."""
+        """Return the scene whose free numbers have the values that belong to the variables x (p,)."""
         pairs = zip(self.numbers, np.asarray(x, dtype=float).tolist(), strict=True)
         values = {number.path: number.number(each) for number, each in pairs}
         return with_numbers(self.start, values) if values else self.start
 
     def at(self, x: np.ndarray) -> FittedModes:
-        """Compute the modes of the scene that belongs to variables."""
+        """Compute the modes of the scene that belongs to the variables x (p,)."""
         self.solved[0] += 1
         return FittedModes(self, x, Model(self.scene_at(x), self.discretization))
 
     @property
     def flat(self) -> float:
-        """Slope of the sum of squares that counts as zero: the tolerance over squared relative weights."""
+        """Gradient of the sum of squares that counts as 0: the tolerance over squared relative weights."""
         return self.tolerance * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
 
     @property
@@ -162,7 +163,7 @@ class FittedModes:
         return off / self.fitting.weight[rows, columns]
 
     def derivative(self, pairs: np.ndarray) -> np.ndarray:
-        """Compute derivatives (pairs, variables) of residuals of paired frequencies by the variables."""
+        """Compute derivatives (pairs, variables) of the residuals of pairs with respect to the variables."""
         rows, columns = np.nonzero(pairs != NO_MODE)
         pencil, speeds = self.model.equations.steady(), self.fitting.data.speeds.tolist()
         modes = [PerturbedModes.of(pencil, *each) for each in zip(speeds, *self._solved, strict=True)]
@@ -212,7 +213,7 @@ class Fitted:
 
 @one_blas_thread()
 def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fitted:
-    """Minimize from variables (p,) with a limited number of solutions; renew the pairs as the scene changes.
+    """Minimize the sum of squares from given variables (p,); pair frequencies again as the scene changes.
 
     Parameters
     ----------

@@ -59,11 +59,11 @@ class FreeNumber:
         return self.path in SPRINGS
 
     def variable(self, value: float) -> float:
-        """Convert a value [unit] to the variable."""
+        """Convert a value of the number [unit] to the scaled variable of a fit."""
         return self.scale / value if self.is_compliance else value / self.scale
 
     def value(self, x: float) -> float:
-        """Convert the variable to a value [unit].
+        """Convert the scaled variable of a fit to a value of the number [unit].
 
         The value is inf for a compliance so small that the root counts as clamped.
         """
@@ -72,7 +72,7 @@ class FreeNumber:
         return self.scale * x
 
     def number(self, x: float) -> float:
-        """Convert the variable to a value [unit] for the scenes of a fit, in which springs stay finite."""
+        """Convert the scaled variable to a value [unit] for scenes of a fit, in which springs stay finite."""
         return self.scale / x if self.is_compliance else self.scale * x
 
     @property

@@ -1,4 +1,4 @@
-"""Comparison of measured with computed natural frequencies: pairs, deviations, and a verdict on each.
+"""Comparison of measured with computed natural frequencies: pairs, deviations, and whether each agrees.
 
 In shapes of arrays, N counts measured values.
 """
@@ -44,9 +44,9 @@ class FrequencyComparison(SceneResult):
     mode : ndarray of int, shape (N,)
         Number of the computed mode at its speed, from 1; 0 where there is none.
     allowance : ndarray, shape (N,)
-        Possible error of the measured value [Hz]: half of its last digit, and twice its uncertainty.
+        Possible error of the measured value [Hz]: `rounding` plus twice its uncertainty.
     rounding : ndarray, shape (N,)
-        Half of the last digit of the measured value alone [Hz].
+        Half a unit of the last digit of the measured value [Hz].
     error : ndarray, shape (N,)
         Estimated numerical error of the computed frequency [Hz].
     model_error : ndarray, shape (N,)
@@ -61,7 +61,7 @@ class FrequencyComparison(SceneResult):
     explanations : tuple of OneNumberFit
         Numbers of the scene that, changed alone, fit all data best; the best comes first.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the frequencies were computed.
 
@@ -110,19 +110,23 @@ class FrequencyComparison(SceneResult):
 
     @property
     def verdict(self) -> tuple[str, ...]:
-        """Verdict on each value: "agrees", "within the model error", "outside" or "no mode"."""
+        """Agreement of each value: "agrees", "within the model error", "outside" or "no mode".
+
+        A value agrees if it deviates by at most `allowance` plus `error`, and is within the model error if
+        it deviates by at most their sum with `model_error`; "no mode" if the scene has no such mode.
+        """
         off, sure = np.abs(self.measured - self.computed), self.allowance + self.error
         each = [np.isnan(off), off <= sure, off <= sure + self.model_error]
         return tuple(np.select(each, [ALONE, AGREES, LEFT_OUT], OUTSIDE).tolist())
 
     @property
     def in_digits(self) -> np.ndarray:
-        """Whether each value differs by at most half of its last digit."""
+        """Whether each value differs from the computed one by at most half a unit of its last digit."""
         return np.abs(self.measured - self.computed) <= self.rounding
 
     @property
     def agrees(self) -> bool:
-        """Whether all values agree within their uncertainty, half of their last digit and numerical error."""
+        """Whether all values agree within `allowance` plus `error`."""
         return set(self.verdict) == {AGREES}
 
     def to_dict(self) -> dict[str, Any]:

@@ -55,7 +55,7 @@ class Identification(SceneResult):
     solves : int
         Number of scenes whose eigenproblems were solved, each at all speeds.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 

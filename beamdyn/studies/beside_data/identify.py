@@ -103,13 +103,16 @@ def identify(
 
 
 def _likely_sum(freedom: int) -> float:
-    """Return the sum of squares that is rarely exceeded by a number of standard normal deviations."""
+    """Return the 99.9 % quantile of the sum of squares of `freedom` standard normal variables."""
     return float(2 * special.gammaincinv(freedom / 2, _LIKELY))
 
 
 @dataclass(frozen=True)
 class _Told:
-    """Statistics derived from a finished fit: intervals, covariances, outliers and warnings."""
+    """Statistics derived from a finished fit: intervals, covariances, outliers and warnings.
+
+    `known` states whether the data have uncertainties; `doubts` are statements about a possibly wrong unit.
+    """
 
     fit: Fitted
     known: bool
@@ -231,9 +234,10 @@ class _Told:
 
     def _warnings(self) -> Iterator[str]:
         if self._is_poor:
-            said = f"deviations are {self._poorness:.2g} times the uncertainties of the data: it does not fit"
+            said = f"deviations are {self._poorness:.2g} times the uncertainties of the data"
             yield Statement(
-                f"{said}, and the intervals do not say by how much that changes the numbers", kind=LIMITS
+                f"{said}: the scene does not fit, and the intervals do not include the effect of that",
+                kind=LIMITS,
             )
         if not self.known and self._freedom <= 0:
             said = "there are as many unknowns as data: no interval follows; give uncertainties or more data"

@@ -72,9 +72,9 @@ def likeness_of(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
 
 
 def likeness_of_kinds(labels: Sequence[str], kinds: np.ndarray | None, modes: int) -> np.ndarray | None:
-    """Compare modes by labels that mention torsion: 1 if a measured and a computed mode are of one kind.
+    """Compare kinds of modes (measured, computed): 1 if both modes are torsional or neither is, otherwise 0.
 
-    None if no label mentions it.
+    Measured modes are torsional if their labels mention torsion; None if no label mentions it.
     """
     said = np.array([TORSION in label.lower() for label in labels])
     if not said.any():

@@ -1,10 +1,10 @@
 """Identifiability: which numbers data determine, which not separately, and which data would help.
 
 Let J = U S V^T be the derivatives of residuals, over their uncertainties, with respect to the variables of
-size 1.  A change of size 1/s along a column of V changes the data by one uncertainty; as numbers are bounded,
-1/s is limited to ten.  If a number can change by its full size within the uncertainties, the data do not
-determine it.  Uncertainties are at least a millionth of the frequency, so that rounding cannot change the
-verdict.
+size 1.  A change of size 1/s along a column of V, with the singular value s, changes the data by one
+uncertainty; as numbers are bounded, 1/s is limited to ten.  If a number can change by its full size within
+the uncertainties, the data do not determine it.  Uncertainties are at least a millionth of the frequency, so
+that rounding cannot change this decision.
 
 In shapes of arrays, p counts variables, and N measured values.
 """
@@ -31,7 +31,8 @@ _TAKES_PART = 0.5
 # Smallest singular value used, in place of smaller ones: the bounds of a variable are about ten times its
 # size apart.
 _BOUND = 0.1
-# Smallest relative change of a measurement along a direction for which it determines that direction.
+# Smallest relative change of a measurement, per unit step of the variables along a direction, for which it
+# determines that direction.
 _TOLD = 0.05
 _STEP = 1e-3
 _BODY = 0.2  # mass of a known body, over that of the beam, that is proposed for a measurement
@@ -72,7 +73,7 @@ class Information:
 
     @property
     def lost(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Directions that the data do not determine, and the variables concerned."""
+        """Directions (p,) that the data do not determine, with masks (p,) of their main variables."""
         _, s, V = self._parts
         each = [
             (v, ~self.told & (np.abs(v) / size > _TAKES_PART * LARGEST))

@@ -16,7 +16,7 @@ from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.fit import Fitting, fit_from
 from beamdyn.studies.beside_data.free_numbers import SPRINGS, FreeNumber, free_numbers
 
-_WITHIN = {  # numbers that may be wrong, and the least and largest factor of the error
+_WITHIN = {  # numbers that may be wrong, and the least and largest ratio of the true value to the given one
     "beam.length": (0.8, 1.25),
     "beam.thickness": (0.5, 2.0),
     "beam.width": (0.5, 2.0),

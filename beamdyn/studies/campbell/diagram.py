@@ -41,8 +41,8 @@ Scenes: TypeAlias = "Scene | Sequence[Scene] | Mapping[str, Scene]"
 class Campbell(SceneResult, StatesModelError):
     """Natural frequencies over speed, excitation lines, their crossings and margins.
 
-    `left_out`, `model_error` and `left_out_effects`, computed at their first use, estimate how much neglected
-    physical effects change the speeds of the crossings (k,).
+    `left_out` contains the estimated relative change of the speed of each crossing by each neglected physical
+    effect, `model_error` (k,) the magnitude of the sum of these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -60,9 +60,9 @@ class Campbell(SceneResult, StatesModelError):
         Where lines meet natural frequencies, scene by scene, by ascending speed.
     margins : tuple of Margin
         Distances of each mode from the nearest line at the rated speed and over the operating range.
-    bounds : tuple of FrequencyBounds
-        Guaranteed bounds at the rated speed, or otherwise the top speed, of the scenes that have them; empty
-        if they were not requested.
+    bounds : tuple of (str, FrequencyBounds)
+        Label and guaranteed bounds, at the rated speed or otherwise the top speed, of each scene that has
+        them; empty if they were not requested.
     rated : float or None
         Rated speed [rad/s].
     operating : tuple of float or None
@@ -70,7 +70,7 @@ class Campbell(SceneResult, StatesModelError):
     unit : {"rad/s", "rpm"}
         Unit of speeds in the plot and the tables.
     warnings : tuple of str
-        Limits of the answer.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 

@@ -35,7 +35,8 @@ class LineCrossing:
     error : float
         Estimated relative error of the speed.
     confidence : float
-        Smallest confidence with which the mode was tracked from the first speed to this one.
+        Smallest confidence with which the mode was tracked from the first speed to this one: 1 is certain, 0
+        a guess.
     plane_share : tuple of float
         Fractions of the mode's kinetic energy, at this speed, in the bending direction at the root and
         across.
@@ -65,7 +66,10 @@ class LineCrossing:
 
 @dataclass(frozen=True)
 class _Root:
-    """Speed at which a line meets a natural frequency, which is given by its index in ascending order."""
+    """Speed at which a line meets a natural frequency, which is given by its index in ascending order.
+
+    `slope` is the derivative of their distance, both angular frequencies, with respect to the speed.
+    """
 
     line: Line
     place: int

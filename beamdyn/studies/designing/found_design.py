@@ -46,7 +46,7 @@ class FoundDesign(SceneResult):
         Bounds and limits that the design reaches, in words.
     only_one_way : bool
         Whether the results that miss their targets rise or fall monotonically with each number over all
-        computed designs, and the design is at the end nearest to the targets.  This does not prove that no
+        computed designs, and the design is at the bounds nearest to the targets.  This does not prove that no
         other design within the bounds is nearer: results may have extrema between computed designs.
     proof : str
         Proof that no design within the bounds comes nearer to any missed target; empty unless there is a
@@ -109,7 +109,10 @@ class FoundDesign(SceneResult):
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative change of m results over that of p numbers, (m, p): 3 if it is as a number cubed."""
+        """Relative change of m results over that of p numbers, shape (m, p).
+
+        It is 3 if a result is proportional to the cube of a number.
+        """
         return self.derivative * self.value / self.reached[:, None]
 
     @property

@@ -97,7 +97,7 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Sign of the change of each target's result by each number, 1, -1 or 0; None if not known."""
+        """Sign (1, -1 or 0) of each target's change as each number increases; None if not known."""
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
@@ -173,7 +173,7 @@ class Proofs:
         return Words(f"{said}the least factor by ", least.says, apart, most.says)
 
     def _in_the_bounds(self) -> _Limits:
-        """Return the range of factors between results of designs within the bounds, from the corners."""
+        """Return the range of the factor between results of designs within the bounds and those of `x`."""
         ranges = self.search.ranges
         corners = [*Designs(ranges.inputs).extremes()]
         columns = {name: np.array([each[name] for each in corners]) for name in self._names}

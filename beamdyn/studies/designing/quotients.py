@@ -1,6 +1,6 @@
 """Results that are extrema or means of quotients, and the numbers that increase or decrease these.
 
-By the minimum-maximum principle a plain undamped beam has
+By the minimum-maximum principle an undamped beam with the default physics has
 
     (2 pi f)^2 = V(w)/T(w) for a frequency f at rest,    Omega^2 = V(w)/G(w) for the critical speed Omega,
 
@@ -50,8 +50,8 @@ _ROUNDING = 4 * np.finfo(float).eps  # relative rounding error of distances
 def ways(scene: Scene, what: str) -> dict[str, int]:
     """Find which numbers increase (1), decrease (-1) or do not change (0) the quotient for all deflections.
 
-    This holds for any values of the other numbers, as long as the scene meets the conditions.  The conditions
-    are linear in each number: if they hold at all corners of the bounds, they hold within.
+    This holds for any values of the other numbers, as long as the scene meets the conditions checked here.
+    They are linear in each number: if they hold at all corners of the bounds, they hold within.
 
     Parameters
     ----------
@@ -111,7 +111,8 @@ def _of_buckling(scene: Scene) -> dict[str, int]:
 
     G increases with R.  If R is at least the distance of all masses from the root, no part of G is negative,
     and G increases with each mass.  If only sections have mass, G is proportional to it for any R. With a
-    clamped root and no springs, for a given w(x/L), the parts of sections and a tip mass in G/V are
+    clamped root and no springs, the parts of sections and a tip mass in G/V are, with integrals a, b, c that
+    depend on w(x/L),
 
         L^3 R a - L^4 b + d^2 L^4 c  with b <= a,    L^2 R a - L^3 a + d^2 L^3 c,
 

@@ -335,9 +335,10 @@ class Search:
     # Additional output ------------------------------------------------------------------------------
 
     def derivatives(self, x: np.ndarray) -> np.ndarray:
-        """Compute derivatives (results, numbers) of the results' logarithms by the scaled numbers.
+        """Compute derivatives of the logarithms of results, shape (results, numbers).
 
-        Each is the slope of a parabola through three designs, all within the bounds.
+        They are with respect to the numbers as fractions of their ranges; each is the slope of a parabola
+        through three designs, all within the bounds.
         """
         steps = np.where(x < DIFFERENCE, 1.0, np.where(x > 1 - DIFFERENCE, -2.0, -1.0)) * DIFFERENCE
         a, b = (
@@ -377,7 +378,7 @@ def _within(x: np.ndarray) -> np.ndarray:
 
 
 def _slopes(function: Function, x: np.ndarray) -> np.ndarray:
-    """Compute the derivatives of a function by the numbers of a design, by differences in the bounds."""
+    """Compute derivatives of a function with respect to a design x, by differences within the bounds."""
     x = _within(x)
     steps = np.where(x + _STEP <= 1, _STEP, -_STEP)
     values = function(np.vstack([x, x + np.diag(steps)]))

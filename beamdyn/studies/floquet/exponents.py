@@ -15,7 +15,7 @@ with the advance alpha of the slower phase in T, and the largest exponent lies b
   1/mu (the avalanche principle); a k-th of it is no more than the largest.  With all singular values it is
   the mean of log |det A|, without error.
 
-Without damping a stable motion has the exponent 0.  No bound separates it from a small exponent: the verdict
+Without damping a stable motion has the exponent 0.  No bound separates it from a small exponent: the status
 is "undecided", with a bound on the growth rate.
 
 References
@@ -71,7 +71,7 @@ class LargestExponent:
     rate, error : float
         Growth rate and its error [1/s].
     status : {"stable", "unstable", "undecided"}
-        Verdict on the motion, by the growth rate and its error.
+        Stability of the motion, by the growth rate and its error.
     period : float
         Period of the faster phase [s].
     """
@@ -94,8 +94,9 @@ def largest_exponent(scene: Scene, equations: Equations) -> LargestExponent:
     assert scene.motion is not None
     rates = rates_of(scene)
     if len(rates) > 2:
-        bound = "its phases have more than two rates, and do not all meet again"
-        raise InvalidValue("scene.motion", scene.motion, bound, "give at most two, or make all meet")
+        bound = "its phases have more than two rates without a common period"
+        remedy = "give at most two, or rates with a common period"
+        raise InvalidValue("scene.motion", scene.motion, bound, remedy)
     slow, fast = sorted(rates)
     system, T = ModalSystem(equations, scene.motion), 2 * math.pi / fast
     _, K, _ = system.coefficients(np.linspace(0, 16 * T, 257))
@@ -111,9 +112,10 @@ def largest_exponent(scene: Scene, equations: Equations) -> LargestExponent:
 
 @dataclass(frozen=True)
 class Cocycle:
-    """Map over a period [s]: matrices of the harmonics -M to M of the slower phase.
+    """Map of the state over a period [s] of the faster phase: its harmonics -M to M in the slower phase.
 
-    `tail` is the size of the last harmonics relative to the largest.
+    `alpha` is the advance of the slower phase in this period [rad], `tail` the size of the last harmonics
+    relative to the largest.
     """
 
     harmonics: np.ndarray

@@ -28,7 +28,7 @@ from beamdyn.transient.system import ModalSystem
 
 MOST_TURNS = 64  # largest number of cycles of the first phase in a common period of all phases
 _MOST_OTHERS = MOST_TURNS**2  # largest number of cycles of any other phase in a common period
-_COMMENSURATE = 1e-12  # relative difference of a frequency ratio from a fraction, below which it is rounding
+_COMMENSURATE = 1e-12  # relative distance from a fraction at which a frequency ratio counts as this fraction
 
 
 class Period(NamedTuple):
@@ -131,9 +131,9 @@ class Monodromy:
     Parameters
     ----------
     matrix : ndarray, shape (P, 2 n, 2 n)
-        Maps of the state (w q, q') over a period.
+        Maps over a period of the state (w q, q'), with coordinates q and frequencies w at rest [rad/s].
     error : ndarray, shape (P,)
-        Estimated errors, as norms of matrices.
+        Estimated errors of the matrices, as 2-norms.
     period : ndarray, shape (P,)
         The periods [s].
     form : ndarray, shape (P, 2 n, 2 n), or None

@@ -36,7 +36,7 @@ class Multipliers:
     Parameters
     ----------
     value : ndarray of complex, shape (P, multipliers)
-        Multipliers, the largest first.
+        Multipliers, by descending magnitude.
     error : ndarray, shape (P, multipliers)
         Estimated errors of the multipliers.
     sign : ndarray, shape (P, multipliers), or None
@@ -58,7 +58,7 @@ class Multipliers:
 
     @cached_property
     def verdict(self) -> np.ndarray:
-        """Verdicts on the motions: "stable", "unstable" or "undecided"."""
+        """Stability of each motion: "stable", "unstable" or "undecided"."""
         outside = (self.size - self.error > 1).any(axis=1)
         if self.sign is None:
             stable = (self.size + self.error < 1).all(axis=1)

@@ -37,8 +37,9 @@ _BOUNDED = "stability is not decided: the largest exponent is 0 within its error
 class FloquetMultipliers(SceneResult, JudgedByRepeating):
     """Floquet multipliers of free vibration about a periodic motion: its growth factors over one period.
 
-    `model_error` and `left_out`, computed at their first use, estimate how much neglected physical effects
-    change the magnitude of the largest multiplier.
+    `left_out` contains the estimated relative change of the magnitude of the largest multiplier by each
+    neglected physical effect, `model_error` the magnitude of the sum of these changes; both are computed at
+    first use.
 
     Parameters
     ----------
@@ -59,12 +60,12 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
     period : float
         Period of the equations of motion [s]; with `method` "exponent" that of the faster phase.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
     method : {"multipliers", "exponent"}
-        "multipliers" for a periodic motion; for two rates without a common period "exponent": bounds of the
-        largest Lyapunov exponent, and no multipliers.
+        "multipliers" for a periodic motion; for two angular frequencies without a common period "exponent":
+        bounds of the largest Lyapunov exponent, and no multipliers.
 
     Examples
     --------
@@ -89,7 +90,7 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
     follows_stiffness: ClassVar[bool] = False
 
     def headline(self) -> Iterator[str]:
-        """Yield verdict, growth rate and its error, the parts of the result's one-line summary.
+        """Yield status, growth rate and its error, the parts of the result's one-line summary.
 
         See `Result.headline`.
         """
@@ -155,8 +156,8 @@ def floquet_multipliers(
     Raises
     ------
     ValueError
-        If there is no motion, it has more than two rates without a common period, or an argument is out of
-        its range.
+        If there is no motion, it has more than two frequencies without a common period, or an argument is out
+        of its range.
 
     References
     ----------

@@ -47,7 +47,8 @@ from beamdyn.studies.study import VERSIONS
 _NAMES = "status", "rate", "error", "radius", "period"
 _TASK = 16  # number of scenes in a task
 _JUDGED = 3  # number of values of each number at which the model error is computed
-_ROUNDING = 1e-12  # relative change of a product below which it is constant
+# Largest relative change of ratios of rates, and of products of period and number, that counts as none.
+_ROUNDING = 1e-12
 _MOST_ENTRIES = 20_000_000  # largest total number of entries of all matrices, so that they fit into memory
 
 
@@ -55,8 +56,9 @@ _MOST_ENTRIES = 20_000_000  # largest total number of entries of all matrices, s
 class StabilityChart(SceneResult, JudgedByRepeating):
     """Stability of free vibration about a periodic motion, over two numbers of the scene.
 
-    `model_error` and `left_out`, computed at their first use, estimate how much neglected physical effects
-    change the magnitude of the largest multiplier, at three values of each number (9,).
+    `left_out` contains the estimated relative change of the magnitude of the largest multiplier by each
+    neglected physical effect, at three values of each number (9,), `model_error` the magnitude of the sum of
+    these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -75,7 +77,7 @@ class StabilityChart(SceneResult, JudgedByRepeating):
     integrated : int
         Number of scenes whose free vibration was integrated; the others were interpolated.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -102,7 +104,7 @@ class StabilityChart(SceneResult, JudgedByRepeating):
     follows_stiffness: ClassVar[bool] = False
 
     def headline(self) -> Iterator[str]:
-        """Yield the number of points with each verdict and the error, for the one-line summary.
+        """Yield the number of points with each status and the error, for the one-line summary.
 
         See `Result.headline`.
         """
@@ -161,7 +163,7 @@ def stability_chart(
     workers : int
         Number of processes; the result is bitwise the same for any number.
     store : str or Path, optional
-        Folder in which integrated scenes are saved; scenes found there are not computed again.
+        Folder in which results of scenes are saved; scenes found there are not computed again.
 
     Returns
     -------
@@ -233,12 +235,15 @@ def integrate(points: Points) -> list[Monodromy]:
 
 
 def judge(points: Points) -> list[dict[str, np.ndarray]]:
-    """Return the verdicts of a task: by multipliers, or by the largest exponent if there is no period."""
+    """Return the stability of each scene of a task: arrays (1,) by name, see `_verdicts`.
+
+    It is that by Floquet multipliers, or by the largest Lyapunov exponent if the motion has no period.
+    """
     return [_verdict(points.scenes, numbers) for numbers in points.numbers]
 
 
 def _verdict(scenes: PeriodicScenes, numbers: dict[str, float]) -> dict[str, np.ndarray]:
-    """Return verdict, growth, error, multiplier and period of one scene, as arrays (1,) by name."""
+    """Compute the stability of one scene: arrays (1,) by name, as `_verdicts` returns them."""
     if meet_again(scene := scenes.at(numbers)):
         return _verdicts(scenes.monodromy(numbers))
     found = largest_exponent(scene, scenes.equations(scene))
@@ -275,7 +280,7 @@ class _Grid:
         return Designs(self.inputs).at(*map(int, np.unravel_index(place, self.shape)))
 
     def solved(self) -> tuple[dict[str, np.ndarray], int]:
-        """Compute arrays of the chart's shape by name, and the number of scenes that were integrated."""
+        """Compute the stability as arrays of the chart's shape, by name, and count integrated scenes."""
         if not self._keeps_ratio():
             places = range(math.prod(self.shape))
             each = self._run(judge, [self.numbers(place) for place in places])
@@ -293,7 +298,7 @@ class _Grid:
         return {name: each.reshape(self.shape) for name, each in found.items()}, integrated + len(undecided)
 
     def _keeps_ratio(self) -> bool:
-        """Return whether the ratio of all rates is the same at corners and midpoints of the chart."""
+        """Return whether the ratios of all phase rates are the same at corners and midpoints of the chart."""
         rows, columns = (sorted({0, n // 2, n - 1}) for n in self.shape)
         scenes = [self.scenes.at(Designs(self.inputs).at(i, j)) for i in rows for j in columns]
         rates = [np.array(rates_of(each)) for each in scenes]
@@ -361,7 +366,11 @@ class _Grid:
 
 
 def _verdicts(motion: Monodromy) -> dict[str, np.ndarray]:
-    """Return verdicts, growth, errors, multipliers and periods of monodromy matrices, by name."""
+    """Compute the stability that follows from monodromy matrices, by name.
+
+    It consists of the status, the largest growth rate and its error [1/s], the magnitude of the largest
+    Floquet multiplier, and the period [s].
+    """
     found = multipliers_of(motion)
     rate, error = found.growth
     values = found.verdict, rate, error, found.size[:, 0], motion.period

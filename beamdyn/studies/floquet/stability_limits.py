@@ -47,12 +47,12 @@ class StabilityLimits(SceneResult):
     place : ndarray, shape (P, 2)
         Values of the two numbers, in SI.
     error : ndarray, shape (P,)
-        Distance, as a fraction of the ranges of the chart, within which the limit is: at this distance on
-        either side, the verdicts are "stable" and "unstable"; inf if they are not.
+        Error of the position, as a fraction of the ranges of the two numbers: at this distance from the limit
+        the motion is certainly stable on one side and unstable on the other; inf if this was not found.
     multiplier : ndarray of complex, shape (P,)
-        Nondimensional multiplier that leaves the unit circle.
+        Nondimensional Floquet multiplier that leaves the unit circle.
     warnings : tuple of str
-        Limitations of the result.
+        Warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -168,9 +168,7 @@ def stability_limits(
 
 def _warnings(error: np.ndarray) -> Iterator[Statement]:
     if number := int(np.isinf(error).sum()):
-        said = (
-            f"at {counted(number, 'point')} of the limits the verdicts on both sides are uncertain: see error"
-        )
+        said = f"at {counted(number, 'point')} of the limits stability on both sides is uncertain: see error"
         yield Statement(said, kind=TOLERANCE, quantity="undecided", value=number / len(error))
 
 
@@ -182,7 +180,7 @@ _TURNS, _FIRST_TURNS = 0.9, 0.2
 # Factor by which the half width of a bracket about the limit is reduced, and the smallest half width.
 _NARROWER, _NARROWEST = 0.25, 1e-7
 _FINE = 1e-11  # accuracy of a root, as a fraction of the ranges of the two numbers
-# Distances, as fractions of the ranges, at which the verdicts on both sides of a point are evaluated.
+# Distances, as fractions of the ranges, at which the stability on both sides of a point is computed.
 _ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
 _MOST = 400  # largest number of points of a curve in each direction
 # Distance from the border of the chart, over the length of a segment, below which the segment ends on the
@@ -192,7 +190,11 @@ _SLACK = 0.5  # fraction of a cell by which a polygonal curve may miss an edge t
 
 
 class LimitPoint(NamedTuple):
-    """Point of a limit: position (2,) as fractions of the ranges, error, multiplier on the unit circle."""
+    """Point of a stability limit in the chart.
+
+    Position (2,) as fractions of the ranges of the two numbers, its error in the same unit, and the Floquet
+    multiplier that leaves the unit circle there.
+    """
 
     place: np.ndarray
     error: float
@@ -201,7 +203,7 @@ class LimitPoint(NamedTuple):
 
 @dataclass(frozen=True)
 class LimitTracer:
-    """Tracer of stability limits over two numbers, which starts at edges of the chart that they cross.
+    """Tracer of stability limits over two numbers; it starts between neighbouring points of the chart.
 
     Parameters
     ----------
@@ -210,7 +212,7 @@ class LimitTracer:
     inputs : tuple of VariedInput
         The two numbers.
     status : ndarray of str, shape (first, second)
-        Verdicts of the chart.
+        Stability at each point of the chart.
     """
 
     scenes: PeriodicScenes
@@ -259,7 +261,7 @@ class LimitTracer:
         return -float(_nearest(found)[0] ** 2 / 4)
 
     def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
-        """Build the limit at a root; at its distance `error`, verdicts on both sides are certain."""
+        """Make the point of the limit at a root; at the distance `error` from it stability is certain."""
         error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
         found = self._multipliers(place)
         leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]
@@ -333,7 +335,10 @@ class LimitTracer:
 
 
 def _nearest(found: Multipliers) -> tuple[float, complex]:
-    """Return smallest distance and mean of two undamped multipliers that may leave the unit circle."""
+    """Find the two closest Floquet multipliers of undamped motion not known to have equal Krein signs.
+
+    Return their distance and mean.  Where two such multipliers meet, they may leave the unit circle.
+    """
     value, sign = found.value[0], np.zeros(0) if found.sign is None else found.sign[0]
     apart = np.abs(value[:, None] - value)
     barred = (sign[:, None] * sign > 0) | np.eye(len(value), dtype=bool)

@@ -5,9 +5,10 @@ a position along the beam.  They are evaluated for eight values near the number,
 these values is differentiated; its last term shows how well the dependence is resolved.  Eigenvalues have far
 fewer correct digits, so that they are not differenced.
 
-With P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 and P v = 0, w^T P = 0, a change dP of P changes the
-eigenvalue by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating
-Systems, 1966, section 7).
+With the dynamic stiffness P(s) = s^2 M + s (C + omega G) + K0 + omega^2 K2 at the speed omega, and P v = 0,
+w^T P = 0 at an eigenvalue s with right and left eigenvectors v and w, a change dP of P changes the eigenvalue
+by ds = -w^T dP v / (w^T (2 s M + C + omega G) v)  (Lancaster, Lambda-Matrices and Vibrating Systems, 1966,
+section 7).
 
 In shapes of arrays, n counts coordinates, and k eigenvalues.
 """
@@ -179,12 +180,12 @@ class PerturbedModes:
     def of(
         cls, pencil: SteadyPencil, speed: float, eigenvalue: np.ndarray, right: np.ndarray
     ) -> PerturbedModes:
-        """Compute the left eigenvectors of modes, and return left and right eigenvectors."""
+        """Make the perturbed modes from eigenvalues and right eigenvectors; compute the left eigenvectors."""
         left = [_left(pencil, speed, s, v) for s, v in zip(eigenvalue, right.T, strict=True)]
         return cls(pencil, speed, eigenvalue, right, np.array(left).T)
 
     def derivatives(self, change: PencilChange) -> np.ndarray:
-        """Compute the derivatives of the eigenvalues for derivatives of the matrices."""
+        """Compute the derivatives of the eigenvalues from the derivatives of the matrices."""
         return np.array(
             [
                 -change.between(self.left[:, k], self.right[:, k], s, self.speed) / self._slope(k)
@@ -295,7 +296,7 @@ class Changes:
 
 @one_blas_thread()  # with small matrices, further threads only slow each other down
 def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
-    """Evaluate the equations of a model at several values near each number."""
+    """Compute derivatives of a model's matrices with respect to numbers, from several values near each."""
     fine, coarse, missed, rounding, refusals = [], [], [], [], []
     for number in numbers:
         try:

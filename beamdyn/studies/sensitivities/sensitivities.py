@@ -199,7 +199,7 @@ def crossing_sensitivities(
     Parameters
     ----------
     scene : Scene
-        The scene; its motion defines the lines.
+        The scene; its motion defines the excitation lines.
     top_speed : float
         Top speed [rad/s].
     modes
@@ -256,7 +256,7 @@ def crossing_sensitivities(
 
 
 def _since(start: float, model: Model) -> Provenance:
-    """State how sensitivities were computed since a time: by a model, compared with its coarser one."""
+    """Describe the computation of sensitivities with a model, started at a time of `perf_counter` [s]."""
     return Provenance.since(start, str(model.discretization), str(model.coarser.discretization))
 
 
@@ -289,7 +289,9 @@ def _compared(
     part: Callable[[np.ndarray], np.ndarray] = np.real,
     unit: float = 1.0,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute derivatives of k results by n numbers (n, k), with errors by a model and its coarser one.
+    """Compute derivatives (n, k) of k results with respect to n numbers, and their estimated errors.
+
+    The errors are estimated from the differences between a model and its coarser one.
 
     Parameters
     ----------

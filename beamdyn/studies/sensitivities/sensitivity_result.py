@@ -29,7 +29,8 @@ from beamdyn.scene.scene import Scene, SceneResult
 
 _TOUCHING = 1e-6  # distance between two points, over the length, below which they touch
 _STEP = 0.01  # step of a number, as a fraction of its value or of the typical size of its kind
-_FURTHER = 2  # factor of the number of modes of another scene, so that a matching mode is found for each
+# Ratio of the number of modes of another scene to that of the result, so that each mode has a counterpart.
+_FURTHER = 2
 _SAME = 0.2  # relative distance below which results of two scenes may belong to the same mode
 # Smallest similarity of a name that is proposed for a mistyped one: many names have the same beginning.
 _NEAR = 0.8
@@ -196,8 +197,9 @@ def _room_of(beam: Beam, path: str) -> float:
 class Sensitivities(SceneResult, JudgedByRepeating):
     """Derivatives of k results with respect to n numbers of a scene.
 
-    `model_error` (k,) and `left_out`, computed at their first use, estimate how much neglected physical
-    effects change the derivative of each result by its most important number.
+    `left_out` contains the estimated relative change, by each neglected physical effect, of the derivative of
+    each result with respect to its most important number, `model_error` (k,) the magnitude of the sum of
+    these changes; both are computed at first use.
 
     Parameters
     ----------
@@ -210,12 +212,12 @@ class Sensitivities(SceneResult, JudgedByRepeating):
     inputs : tuple of SceneNumber
         The numbers, each with its `name`, `unit` and `value`, shape (n,).
     derivative : ndarray, shape (n, k)
-        Derivative of each result by each number [unit / unit of the number]; nan if there is none (see
-        `warnings`).
+        Derivative of each result with respect to each number [unit / unit of the number]; nan if there is
+        none (see `warnings`).
     error : ndarray, shape (n, k)
         Estimated absolute error of the derivative [same unit].
     warnings : tuple of str
-        Missing derivatives with the reason; limitations of the result.
+        Missing derivatives with the reason; warnings about the validity and accuracy of the result.
     provenance : Provenance
         How the result was computed.
 
@@ -249,9 +251,9 @@ class Sensitivities(SceneResult, JudgedByRepeating):
 
     @property
     def relative(self) -> np.ndarray:
-        """Relative change of each result over that of each number (rows): 3 if it is as the number cubed.
+        """Relative change of each result over that of each number, shape (n, k).
 
-        It is 0 if the number is 0.
+        It is 3 if the result is proportional to the cube of the number, and 0 if the number is 0.
         """
         return self.derivative * np.array([each.value for each in self.inputs])[:, None] / self.value
 
@@ -266,7 +268,7 @@ class Sensitivities(SceneResult, JudgedByRepeating):
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Return derivatives for each result's most important number: their error is stated."""
+        """Return derivatives with respect to each result's most important number, for the model error."""
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)
         return np.array([np.nan if k < 0 else found.derivative[rows[name], k] for k, name in most])
@@ -291,7 +293,10 @@ class Sensitivities(SceneResult, JudgedByRepeating):
 
     @property
     def bending_speed(self) -> float:
-        """Speed [rad/s] at which large deflection is judged: of the frequencies, or the largest result."""
+        """Speed [rad/s] at which the change by large deflection is estimated.
+
+        It is the speed of the frequencies, or the largest critical or resonance speed.
+        """
         return self.speed if self.unit == "Hz" else float(np.nanmax(self.value, initial=0.0))
 
     def by(self, name: str) -> np.ndarray:

@@ -150,7 +150,7 @@ def _segments(scene: Scene) -> int:
 def _basis_settings(
     scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
 ) -> tuple[TimedCase, ...]:
-    """Return functions that compute with Ritz bases of several sizes (Legendre: on each segment)."""
+    """Make cases that compute with Ritz bases of several sizes (for Legendre, numbers per segment)."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
     least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf
@@ -162,7 +162,7 @@ def _basis_settings(
 
 
 def _fem_pair(scene: Scene, speeds: np.ndarray, modes: int, mesh: Mesh, segments: int) -> Iterator[Family]:
-    """Yield two families of finite elements: plain and extrapolated."""
+    """Yield two families of finite elements: without and with extrapolation."""
     for name, solve, share in (("", _solve, 1), (", extrapolated", _extrapolate, 2)):
         least = max(segments, -(-modes // 2), 2) * share
         cases = (
@@ -261,7 +261,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
     given = _solve_choice(AS_GIVEN, scene, speed, modes)
     choices, skipped = _list_choices(scene, speed, modes, given)
     title = f"physics: {number_of(modes, 'frequency', 'frequencies')} at {speed:.6g} rad/s"
-    what = "the worst frequency, that of the model included, relative"
+    what = "the worst frequency, relative, including the model error"
     if not choices:
         return Diagram.make(title, what, "", 0.0, (), skipped or ("no effect that can be added changes it",))
     full = choices[-1]
@@ -302,7 +302,7 @@ def _names(choices: list[Choice]) -> str:
 def _list_choices(
     scene: Scene, speed: float, modes: int, given: Choice
 ) -> tuple[list[Choice], tuple[str, ...]]:
-    """List choices of physics: effects one by one, then together; and descriptions of missing effects."""
+    """List choices of physics: effects one by one, then together; and why other effects are left out."""
     additions, missing, _ = list_effects(scene)
     scenes = {a.name: a.scene for a in additions if a.name not in _COMPARED}
     not_known = [f"{name}: {why}" for name, why in missing.items() if name not in _COMPARED]

@@ -62,7 +62,7 @@ class Digit:
     Parameters
     ----------
     error : float
-        Largest allowed error.
+        Largest allowed relative error.
     family, setting : str
         Family and setting of the cheapest measurement within this error.
     time : float
@@ -92,7 +92,7 @@ def number_of(number: int, one: str, many: str) -> str:
 
 
 def pareto_front(measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
-    """Find the Pareto front: measurements that no other equals in error and time while better in one.
+    """Find the Pareto front: the measurements with smaller errors than all faster ones.
 
     Parameters
     ----------

@@ -125,7 +125,10 @@ def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> 
 
 
 def _tip_error(exact: Transient, t_end: float) -> Callable[[Transient], float]:
-    """Compute the error of a run: largest difference of tip deflections at common times, over the largest."""
+    """Return a function that computes the error of a run, relative to the largest tip deflection.
+
+    It is the largest difference between tip deflections of the run and of the reference at common times.
+    """
     t = np.linspace(0, t_end, _INSTANTS)
     true = exact.deflection(t)
     return lambda run: _relative(float(np.abs(run.deflection(t) - true).max()), exact.largest)
@@ -196,7 +199,7 @@ _EPS = float(np.finfo(float).eps)
 
 @one_blas_thread()
 def harmonics_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 5.0) -> Diagram:
-    """Measure error against time of the steady response over the harmonics (interaction order).
+    """Measure error against time of the steady response over the number `harmonics` of `steady_response`.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ from beamdyn.studies.tradeoffs.measurements import Diagram
 # Largest number of modes that the references resolve, even with as many modes of a second plane.
 MOST_MODES = 20
 LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # limits of the time budget [s]
-_REMEDY = "the times of fewer tell how those of more grow"
+_REMEDY = "measure fewer: their times show how the time grows with their number"
 _DEFAULT_PERIODS = 100  # default length of a transient after its start, in periods of the first mode
 _LONGEST_START = 900  # longest start, in periods of the first mode, that a default transient includes
 _LOCUS, _STEADY = 101, 50  # number of speeds of the locus, and of the steady response
