@@ -253,7 +253,7 @@ def _check_shapes(
 
 
 def _displacement(deflection: np.ndarray, points: int, across: np.ndarray) -> np.ndarray:
-    """Return displacement vectors of a strip: z from a deflection (n, k), -y from one across.
+    """Return displacement vectors of a strip: along z the deflection (n, k), along -y `across` (n,).
 
     Rows of points along the beam follow one another from the lowest y; if k is 1, all rows have the same
     deflection.

@@ -451,7 +451,7 @@ class ScreenView:
         self._charts.show(charts)
 
     def _to_draw(self, answered: ShownAnswer) -> object:
-        """Return what tells drawings apart: field texts, accuracy, the other design if it is computed."""
+        """Return what determines the drawing: field texts, accuracy, the other design if it is computed."""
         return answered.entries, answered.is_rough, self.work.other_answer(self.screen) and self.work.other
 
     def _drawn_answer(self, answered: ShownAnswer) -> Any:

@@ -218,7 +218,7 @@ def _to_ours(matrices: np.ndarray) -> np.ndarray:
 
 
 def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], list[np.ndarray]]:
-    """Read n stations, their line numbers, and two matrices (n, 6, 6), in the order of the file."""
+    """Read `count` stations, their line numbers, and two matrices (count, 6, 6), in the order of the file."""
     heads = [n for n, line in enumerate(text.lines, 1) if "distributedproperties" in plain_name(line)]
     if not heads:
         raise text.lacking("expected a line DISTRIBUTED PROPERTIES above the stations")
