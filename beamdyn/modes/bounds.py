@@ -158,7 +158,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
         lower_squared=lower,
         upper_squared=upper,
         width=high / low - 1,
-        how="upper: Rayleigh-Ritz; lower: Rayleigh-Ritz minus a bound of the coupling to all other functions",
+        how=_HOW,
         warnings=(*warn_of_plain(unresolved), *_warnings(lower, upper), *bent),
         provenance=Provenance.since(start, str(method), "its complement"),
         scene=scene,

@@ -1,4 +1,4 @@
-"""The program ``brakes app``; its screens and documents (input files with screens) follow from brake types."""
+"""The program ``brakes app``; its screens and documents (input files with screens) follow from the types."""
 
 from __future__ import annotations
 
