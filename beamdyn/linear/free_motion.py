@@ -69,11 +69,11 @@ class FreeMotion:
     shapes : ndarray of complex, shape (n, m)
         Coordinates q of each free motion.
     states : ndarray of complex, shape (2 n, m)
-        Each free motion in balanced coordinates, u and then w.
+        Each free motion in the states u and then w.
     coordinates : BalancedCoordinates
-        The balanced coordinates u.
+        The coordinates u.
     damping : ndarray, shape (n, n)
-        Damping matrix C in the balanced coordinates [s].
+        Damping matrix C in the coordinates u [s].
     """
 
     inverse_poles: np.ndarray

@@ -27,7 +27,7 @@ from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 
 _TURN = 2 * np.pi
-_POINTS = 500  # number of frequencies of a response to white noise, besides those near resonances
+_POINTS = 500  # number of frequencies of a response to white noise, without those near resonances
 _DECADES = 3  # number of decades from the lowest to the highest frequency of a response to white noise
 # Number of trial functions up to which all are kept instead of modes: 0, that is never, because poles over so
 # wide a range lose digits.

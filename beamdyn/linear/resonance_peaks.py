@@ -3,7 +3,7 @@
 A transfer function's magnitude, from a sum over poles, is extreme where the derivative of its square is 0.
 The derivative is sampled in steps of a fraction of the distance to the nearest pole, and each sign change is
 bisected: every maximum and every minimum, whether or not it lies at a natural frequency.  From a peak to the
-minima beside it the magnitude falls steadily, so that there is one half-power frequency on either side, or
+minima on its sides the magnitude falls steadily, so that there is one half-power frequency on either side, or
 none.
 
 In shapes of arrays, F counts frequencies, and p peaks.

@@ -2,7 +2,7 @@
 
 The principle of virtual work gives the force or moment with which the part outboard of a cut acts on the part
 inboard, if the part outboard moves as a rigid body while the rest stays: along the beam, across it, or by a
-rotation about the cut.  These displacements stand here beside the trial functions of a discretization, so
+rotation about the cut.  These displacements stand here after the trial functions of a discretization, so
 that the fields (`beamdyn.equations.fields`) write all their terms for them, too: no physics is written twice.
 
 A rotation about the cut is a kink.  Its curvature, a delta function at the cut, is kept in all terms but the

@@ -12,9 +12,10 @@ without damping, there is one equation for each harmonic h of each mode a:
 
     (k_a - Omega_h^2 + i Omega_h c_aa) y_ha = f_ha - (what couples it with other harmonics and modes)
 
-The coupling by the periodic coefficients and by damping is weak beside the factor on the left, except near
-a resonance.  So the equations are solved iteratively, with the last response on the right-hand side: each
-iteration multiplies the error by the ratio of coupling to factor, some 1e-3, and a few reach rounding error.
+The coupling by the periodic coefficients and by damping is weak, relative to the factor on the left, except
+near a resonance.  So the equations are solved iteratively, with the last response on the right-hand side:
+each iteration multiplies the error by the ratio of coupling to factor, some 1e-3, and a few reach rounding
+error.
 
 In shapes of arrays, H counts harmonics, n coordinates, S speeds, and N samples of a phase.
 """

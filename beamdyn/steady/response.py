@@ -190,7 +190,7 @@ class SteadyResponse(StatesModelError):
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speeds [rad/s] at which the model error is computed: of the largest amplitude, and others."""
+        """Speeds [rad/s] at which the model error is computed: that of the largest amplitude, and others."""
         known = np.flatnonzero(np.isfinite(self.amplitude))
         if not len(known):
             return np.empty(0)

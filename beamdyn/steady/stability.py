@@ -43,7 +43,7 @@ _SAME_RATE = 0.05  # largest difference of copies of one growth rate, over the c
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
 _OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the matrix is singular
 _SINGULAR = (
-    "the equations with periodic coefficients are singular: the excitation is too strong beside "
+    "the equations with periodic coefficients are singular: the excitation is too strong for "
     "the beam's stiffness; check the size and the unit of each value"
 )
 _STATIONARY = 1e-9  # frequency of a harmonic, over the phases' rates, below which it is stationary

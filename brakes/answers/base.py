@@ -122,7 +122,7 @@ class Answer(Result, ABC):
         return ()
 
     def charts(self, place: float) -> Sequence[Chart]:
-        """Make the charts of the figure, besides drawings, for a position of the slider; by default none."""
+        """Make the charts that the figure has next to drawings, for a slider position; by default none."""
         return ()
 
     def branches(self) -> Mapping[str, Answer]:

@@ -15,7 +15,7 @@ _LEVEL = 1e-12  # relative difference of two answers that counts as rounding
 
 
 def step(first: np.ndarray | float, last: np.ndarray | float, part: float = 1.0) -> np.ndarray:
-    """Return the sign of the change from one answer to another; 0 if it is rounding.
+    """Return the sign of the change from one answer to another; 0 if it may be rounding error.
 
     `part` scales the relative difference that counts as rounding.
     """

@@ -254,7 +254,7 @@ def collect_result(
     error = np.maximum((system.rounding + residual) / np.where(missing, np.nan, kept), virtual_work)
     verdict = _verdict(position, constraints, forces, unbalanced, undetermined, wrong_way.values())
     weak = (
-        f"reactions hang on the last digits of the drawing (smallest singular value {forces.kept.min():.1g}"
+        f"reactions depend on the last digits of the drawing (smallest singular value {forces.kept.min():.1g}"
         "): the position is close to a toggle position or to indeterminacy"
     )
     arrays: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""The drum paper's numbers, from its wrong equations, beside the right ones, and its errors' consequences.
+"""The drum paper's numbers, from its wrong equations, beside corrected ones, and its errors' consequences.
 
 Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). Inputs and errata come from
 ``brakes/published/vardanyan_2019.toml``; the consequences are for the paper's longest arc, 80 degrees,
