@@ -318,7 +318,7 @@ class HarvestedVoltage:
         """Return the voltage in terms of the coordinates; raise ValueError for a short circuit."""
         if not electrodes.resistance:
             raise InvalidValue("output", "voltage", "a short circuit has none", "give harvester.resistance")
-        return LayerRows(electrodes.is_loaded, 0, -1 / electrodes.capacitance(length))
+        return LayerRows(0, -1 / electrodes.capacitance(length))
 
 
 @dataclass(frozen=True)
@@ -341,8 +341,8 @@ class HarvestedCurrent:
             remedy = "give a finite harvester.resistance"
             raise InvalidValue("output", "current", "an open circuit has none", remedy)
         if not electrodes.resistance:
-            return LayerRows(False, 1, -1.0)
-        return LayerRows(True, 0, -1 / electrodes.capacitance(length) / electrodes.resistance)
+            return LayerRows(1, -1.0)
+        return LayerRows(0, -1 / electrodes.capacitance(length) / electrodes.resistance)
 
 
 @dataclass(frozen=True)
@@ -384,12 +384,11 @@ class LayerStrain:
 
 @dataclass(frozen=True)
 class LayerRows:
-    """Voltage or current of layers: `factor` times the `order`-th derivative of theta^T q or of the charge.
+    """Voltage or current of layers: `factor` times the `order`-th time derivative of the coupling theta^T q.
 
-    It is that of the circuit's charge if `of_circuit`, else that of the coupling theta^T q.
+    Where a load closes the circuit, the charge that flows through it is added to theta^T q.
     """
 
-    of_circuit: bool
     order: int
     factor: float
 
