@@ -96,7 +96,7 @@ STEPS = ErrorMargin(
 )
 EFFECTS = ErrorMargin(
     0.5,
-    "tolerance of an automatic choice of physics, over the sizes of neglected effects",
+    "tolerance of an automatic choice of physics, and the largest estimated size of neglected effects",
     "the size of an effect may be estimated too low by a factor of two",
     "automatic_physics",
 )

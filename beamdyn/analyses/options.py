@@ -84,7 +84,7 @@ Stations = Annotated[
     AsText(lambda option, text, _: values.parse_positions(option, text), absent=none_given),
     Parameter(
         help='Stations with their unit, e.g. "0, 10, 25 mm"; default: 21 along the beam, and both sides of '
-        "jumps."
+        "each jump of the section."
     ),
 ]
 SectionPoints = Annotated[

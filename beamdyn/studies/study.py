@@ -221,7 +221,7 @@ def speed_of_study(scene: Scene, what: str, speed: float | None, varied: bool) -
     if what == "crossings":
         checks.positive("speed", at, "rad/s", "it is the top speed up to which crossings are sought")
     if varied and not kind.has_speed:
-        bound = f"a {kind.word} is itself a speed that is sought, and belongs to no other"
+        bound = f"a {kind.word} is itself a speed that is sought, and does not depend on another"
         raise checks.InvalidValue("vary", SPEED, bound, "leave speed out and vary other inputs")
     return at
 

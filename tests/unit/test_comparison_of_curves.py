@@ -38,7 +38,7 @@ def test_a_delay_is_found_and_taken_out():
     np.testing.assert_allclose(found.deviation, 0.02, rtol=1e-2)  # runs of two ends differ by 1e-5
     np.testing.assert_allclose(found.rms, 0.02, rtol=1e-2)
     assert found.phase[0] < 0
-    assert "behind taken out" in found.sentences()[0]
+    assert "by which it is behind" in found.sentences()[0]
 
 
 def test_a_sign_that_is_turned_is_named_and_its_delay_is_not_half_a_period():
@@ -47,9 +47,9 @@ def test_a_sign_that_is_turned_is_named_and_its_delay_is_not_half_a_period():
     found = bd.compare(MOVING, data)
     assert found.is_turned.all()
     np.testing.assert_allclose(found.delay, late, rtol=1e-3)
-    assert "its sign is turned: with the other one" in found.sentences()[0]
+    assert "its sign is opposite: with the other sign" in found.sentences()[0]
     loads = bd.MeasuredLoads([0.0, 0.025], [0.3729, 0.1742], ["axial"], 50.0, rounding=5e-5)
-    assert "its sign is turned" in bd.compare(PLAIN, loads).sentences()[0]
+    assert "its sign is opposite" in bd.compare(PLAIN, loads).sentences()[0]
     assert not bd.compare(PLAIN, replace(loads, value=-loads.value)).is_turned.any()
 
 
@@ -70,12 +70,12 @@ def test_digits_that_agree_are_no_deviation():
     assert "agree to the digits of the data" in near.sentences()[0]
     off = bd.compare(PLAIN, bd.MeasuredLoads([0.0], exact.round(3), ["axial"], 50.0, uncertainty=5e-3))
     assert off.agrees
-    assert "low" in off.sentences()[0] or "high" in off.sentences()[0]
+    assert "below" in off.sentences()[0] or "above" in off.sentences()[0]
 
 
 def test_a_value_beside_none_is_no_infinite_deviation():
     found = bd.compare(PLAIN, bd.MeasuredLoads([0.0, 0.02], [1.0, 0.5], ["moment"], 50.0))
-    assert "but 0 in the model" in found.sentences()[0]
+    assert "compared with 0 in the model" in found.sentences()[0]
     assert "inf" not in " ".join(found.sentences())
 
 

@@ -51,7 +51,7 @@ def test_verdicts_ask_the_data_first_then_the_model():
     np.testing.assert_allclose(found.deviation, shares - 1, atol=1e-8)  # digits of EXACT
     assert not found.agrees
     within, outside = found.sentences()[0], found.sentences()[1]
-    assert "5 % high" in within + outside
+    assert "5 % above" in within + outside
     assert "1.1 %" in within + outside
 
 

@@ -19,7 +19,7 @@ MEASURED = ("--measured", "62.1, 389, 1090 Hz")
 
 def test_three_frequencies_and_no_manual(finished):
     said = " ".join(finished(main(["compare", SCENE, *MEASURED]), 0).out.split())
-    assert "389 Hz is 4.8 % low of 408.792 Hz, outside what the model leaves out (1.1 %)" in said
+    assert "389 Hz is 4.8 % below 408.792 Hz, outside what the model leaves out (1.1 %)" in said
     assert "beam.thickness = 0.19 mm" in said
     assert "beam.youngs_modulus = 181 GPa" in said
 

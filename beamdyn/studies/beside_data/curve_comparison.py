@@ -185,9 +185,10 @@ class CurveComparison(SceneResult):
         largest = say(self.peak[k], self.unit[k]), " at ", self._where(float(self.x[self.places[k]]))
         start = self.name[k], *at_speed, ": the largest, ", *largest
         if self.in_digits[k]:
-            return Words(*start, ", and the whole agree to the digits of the data", self._shifted(k), ".")
+            said = ", and the whole curve agree to the digits of the data"
+            return Words(*start, said, self._shifted(k), ".")
         rms = float(self.rms[k])
-        whole = f", and the whole differs by {percent(rms)} (root mean square)" if np.isfinite(rms) else ""
+        whole = f", and the whole curve differs by {percent(rms)} (rms)" if np.isfinite(rms) else ""
         more = self._shifted(k), self._signed(k), f": {self._reason(k)}."
         return Words(*start, ", is ", *self._beside(k), whole, *more)
 
@@ -195,10 +196,10 @@ class CurveComparison(SceneResult):
         """State how the largest value of curve k compares with the computed one."""
         deviation, computed = float(self.deviation[k]), say(self.computed_peak[k], self.unit[k])
         if np.isinf(deviation):
-            return ("but 0 in the model",)
+            return ("compared with 0 in the model",)
         if abs(deviation) <= NOTHING:
             return "the same as ", computed
-        return f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of ", computed
+        return f"{percent(abs(deviation))} {'below' if deviation < 0 else 'above'} ", computed
 
     def _where(self, at: float) -> str:
         """Describe a point on the abscissa: a time, speed, position or frequency with its unit."""
@@ -211,7 +212,7 @@ class CurveComparison(SceneResult):
         if not self.is_turned[k]:
             return ""
         left = percent(float(self.rms_turned[k]))
-        return f"; its sign is turned: with the other one the whole differs by {left}"
+        return f"; its sign is opposite: with the other sign the whole curve differs by {left}"
 
     def _shifted(self, k: int) -> str:
         """State how far computed curve k leads or lags; empty text if both are in phase."""
@@ -222,7 +223,7 @@ class CurveComparison(SceneResult):
         if self.along == "frequency":
             return f", {abs(phase):.3g} deg {side} there"
         late = f"{abs(self.delay):.3g} s ({abs(phase):.3g} deg of its main frequency)"
-        return f", with {late} {side} taken out"
+        return f", after a shift by {late}, by which it is {side}"
 
     def _reason(self, k: int) -> str:
         """State the reason for the verdict on curve k."""

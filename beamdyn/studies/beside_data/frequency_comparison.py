@@ -175,7 +175,7 @@ class FrequencyComparison(SceneResult):
         deviation, computed = float(self.deviation[k]), f"{self.computed[k]:.{_DIGITS}g} Hz"
         side = "the same as"
         if abs(deviation) > NOTHING:
-            side = f"{percent(abs(deviation))} {'low' if deviation < 0 else 'high'} of"
+            side = f"{percent(abs(deviation))} {'below' if deviation < 0 else 'above'}"
         left_out, own = (float(each[k] / self.computed[k]) for each in (self.model_error, self.allowance))
         said = outside(left_out, own) if words == OUTSIDE else words.format(left_out=percent(left_out))
         found = f": {self.measured[k]:.{_DIGITS}g} Hz is {side} {computed}, {said}"
