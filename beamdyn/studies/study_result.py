@@ -131,8 +131,8 @@ class Study(StatesModelError):
     def answered(self) -> np.ndarray:
         """Whether each design has a result, shape (n1, ..., nd).
 
-        That it does not buckle, or has no resonance, is a result.  A design has no result if it is refused or unstable at its speed, or if its critical speed is not
-        found.
+        That it does not buckle, or has no resonance, is a result.  A design has no result if it is refused or
+        unstable at its speed, or if its critical speed is not found.
         """
         there = ~np.isin(self.status, NO_ANSWERS)
         return np.asarray(there.all(axis=-1)) if self.labels else there

@@ -101,7 +101,7 @@ def design(
 
 def _check_bounds(scene: Scene, path: str, bounds: object) -> VariedInput:
     if isinstance(path, str) and is_speed(path):
-        bound = "the speed is not a number of the scene, but belongs to a target"
+        bound = "the speed is no number of a scene"
         raise InvalidValue("free", path, bound, "give targets their speeds")
     check_path("free", path)
     own = number_at(scene, path)
