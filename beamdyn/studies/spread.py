@@ -341,7 +341,7 @@ def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
 
 
 def check_reach(scene: Scene, given: tolerances.SpreadInput) -> None:
-    """Raise an error for a tolerance with an end that makes the scene invalid, other inputs nominal."""
+    """Raise an error if an end of a tolerance makes the scene with its other nominal values invalid."""
     for end in given.distribution.reach:
         try:
             with_numbers(scene, {given.name: end})

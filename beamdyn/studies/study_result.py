@@ -125,10 +125,10 @@ class Study(SceneResult, StatesModelError):
 
     @property
     def answered(self) -> np.ndarray:
-        """Whether each design has a result, shape (n1, ..., nd); no buckling or resonance is a result, too.
+        """Whether each design has a result, shape (n1, ..., nd).
 
-        A design has no result if it is refused or unstable at its speed, or if its critical speed is not
-        found.
+        That it does not buckle, or has no resonance, is a result.  A design has no result if it is refused or
+        unstable at its speed, or if its critical speed is not found.
         """
         there = ~np.isin(self.status, NO_ANSWERS)
         return np.asarray(there.all(axis=-1)) if self.labels else there
@@ -223,7 +223,7 @@ class Study(SceneResult, StatesModelError):
         return add_legend(ax)
 
     def plot_panels(self, ax: Axes) -> Axes:
-        """Draw the plot of `plot` in a new figure, instead of given axes."""
+        """Draw the results as in a new figure of `plot`: in panels that divide the area of given axes."""
         return plot_maps(*self._picture, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:

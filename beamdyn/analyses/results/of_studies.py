@@ -307,7 +307,7 @@ def _name_below(result: bd.Campbell, label: str, speed: float, high: float) -> s
 
 
 def campbell_csv(result: bd.Campbell) -> Columns:
-    """Make columns of the natural frequencies of all scenes over speed."""
+    """Make columns of the natural frequencies of all scenes over speed, and of the tracking confidence."""
     names = [
         f"{label}: {name}" if label else name
         for label, modes in zip(result.labels, result.names, strict=True)

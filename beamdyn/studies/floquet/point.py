@@ -222,7 +222,7 @@ def _by_exponent(scenes: PeriodicScenes, start: float) -> FloquetMultipliers:
 def _warnings(
     scene: Scene, status: str, rate: float, error: float, why: str = _ON_CIRCLE
 ) -> Iterator[Statement]:
-    """Yield warnings that limit the result: neglected effects, growth, and why it is undecided."""
+    """Yield warnings about the result: neglected effects, growth, and why stability is undecided."""
     yield from warn_of_left_out(scene)
     said = {"quantity": "growth rate", "value": rate}
     if status == UNSTABLE:

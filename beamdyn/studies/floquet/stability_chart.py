@@ -378,7 +378,7 @@ def _verdicts(motion: Monodromy) -> dict[str, np.ndarray]:
 
 
 def _warnings(scene: Scene, status: np.ndarray) -> Iterator[Statement]:
-    """Yield warnings that limit the chart: neglected effects, and undecided points."""
+    """Yield warnings about the chart: neglected effects, and undecided points."""
     yield from warn_of_left_out(scene)
     if number := int((status == UNDECIDED).sum()):
         said = f"at {counted(number, 'point')} of {status.size} the errors allow either: see status"

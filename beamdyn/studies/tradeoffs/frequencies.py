@@ -150,7 +150,7 @@ def _segments(scene: Scene) -> int:
 def _basis_settings(
     scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
 ) -> tuple[TimedCase, ...]:
-    """Make cases that compute with Ritz bases of several sizes (for Legendre, numbers per segment)."""
+    """Make cases that solve in Ritz bases of several sizes (with Legendre functions, per segment)."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
     least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf

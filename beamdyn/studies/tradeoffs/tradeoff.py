@@ -83,7 +83,7 @@ class Tradeoff(SceneResult):
         yield warned(self.warnings)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw all diagrams side by side, instead of in given axes."""
+        """Draw all diagrams in panels, which divide the area of given axes, or in a new figure."""
         ax, places = panels(len(self.diagrams), ax)
         for diagram, place in zip(self.diagrams, places, strict=True):
             diagram.plot(place)
