@@ -104,16 +104,12 @@ class RubbingAnswer(Answer):
         ends = ", ".join(
             _change(self.again(friction=part * mu).torque, torque) for part in (1 - PART, 1 + PART)
         )
-        others = [f"{words} {_change(found, torque)}" for words, found in self.by_other_laws()]
+        others = [f"{words} {_change(self.again(each).torque, torque)}" for words, each in self._other_laws()]
         turned = self.again(reverse=back).torque
         if not abs(turned / torque - 1) < 1e-9:  # true also for nan, when the brake locks
             others.append(f"{'reverse' if back else 'forward'} {_change(turned, torque)}")
         said = "; ".join((f"friction -+{100 * PART:.0f} %: {ends}", *others))
         return f"At this force, torque {tables.format_number(torque)} N m; {said}."
-
-    def by_other_laws(self) -> Iterator[tuple[str, float]]:
-        """Return words and torque of the other pressure laws, at the same force."""
-        return ((words, self.again(brake).torque) for words, brake in self._other_laws())
 
     def doubtful(self) -> Iterator[Any]:
         """Yield results at the same load with less and more friction, and under other pressure laws."""
