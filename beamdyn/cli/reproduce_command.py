@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from cyclopts import App
 
-from beamdyn.common.edge.command_options import Flag, SomeFolder, check_folder
-from beamdyn.common.edge.console import console
-from beamdyn.common.edge.exit_codes import NoAnswer, examples
+from beamdyn.common.edge.command_options import Flag, SomeFolder
+from beamdyn.common.edge.exit_codes import examples
+from beamdyn.common.edge.reports import report_verdicts
 from beamdyn.reproduce import compare_all
 
 
@@ -22,16 +23,7 @@ def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = 
     tables
         Compare with the tables of beams and blades of other sources too; takes some twenty seconds.
     """
-    check_folder("output", output)
-    screen = console()
-    screen.print(f"Pictures go into the folder {output} (--output names another).\n")
-    checked = compare_all(screen, output, tables)
-    unexpected = sum(not row.as_expected for row in checked)
-    if unexpected:
-        raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")
-    screen.print(
-        f"\nAll {len(checked)} verdicts are as expected: agreement, but for the differences explained above."
-    )
+    screen = report_verdicts(partial(compare_all, tables=tables), output)
     if not tables:
         screen.print("beamdyn reproduce --tables compares with the tables of other sources, too.")
 

@@ -55,7 +55,8 @@ class PiecewisePolynomials:
         if not continuous:
             return np.concatenate(on_parts)
         bubbles = [P[2:] - P[:-2] for P in on_parts]  # bubble functions: 0 at both ends of their part
-        return np.concatenate([self._hats(xi), *bubbles])
+        hats = [np.interp(xi, self.ends, unit) for unit in np.eye(len(self.ends))]
+        return np.concatenate([hats, *bubbles])
 
     def _on_part(self, xi: np.ndarray, k: int, number: int) -> np.ndarray:
         """Evaluate Legendre polynomials of part k, which are 0 elsewhere: shape (number, N)."""
@@ -65,10 +66,6 @@ class PiecewisePolynomials:
         if number:
             values[:, inside] = legendre.legvander(2 * (xi[inside] - a) / (b - a) - 1, number - 1).T
         return values
-
-    def _hats(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate hat functions: 1 at one end of a part, 0 at all others, linear in between."""
-        return np.array([np.interp(xi, self.ends, unit) for unit in np.eye(len(self.ends))])
 
     def _part(self, xi: np.ndarray) -> np.ndarray:
         """Find the index of the part that contains each xi."""

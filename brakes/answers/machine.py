@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from rich.console import RenderableType
@@ -70,16 +71,12 @@ class MachineAnswer(RubbingAnswer):
 
         Laws without a result, as for a block that would lift, are left out.
         """
-        brake, found = self.result.brake, {}
-        for law in sorted(brake.laws, key=lambda law: law != brake.law):
-            try:
-                given = self.design.load.given | {"reverse": self.result.reverse}
-                found[brake.laws[law]] = solve_brake(
-                    brake.with_law(law), friction=self.result.friction, **given
-                )
-            except InvalidValue:
-                continue
-        return found or {"value": self.result}
+        brake = self.result.brake
+        found = {brake.laws[brake.law] if brake.laws else "value": self.result}
+        for words, other in self.other_laws():
+            with suppress(InvalidValue):
+                found[words] = self.at_load(other, self.result.friction)
+        return found
 
     def tables(self) -> list[RenderableType]:
         """Make the tables of the brake under each law, of its linings, and of the influence of friction."""

@@ -104,26 +104,32 @@ class RubbingAnswer(Answer):
         ends = ", ".join(
             _change(self.again(friction=part * mu).torque, torque) for part in (1 - PART, 1 + PART)
         )
-        others = [f"{words} {_change(found, torque)}" for words, found in self.by_other_laws()]
+        others = [f"{words} {_change(self.again(each).torque, torque)}" for words, each in self.other_laws()]
         turned = self.again(reverse=back).torque
         if not abs(turned / torque - 1) < 1e-9:  # true also for nan, when the brake locks
             others.append(f"{'reverse' if back else 'forward'} {_change(turned, torque)}")
         said = "; ".join((f"friction -+{100 * PART:.0f} %: {ends}", *others))
         return f"At this force, torque {tables.format_number(torque)} N m; {said}."
 
-    def by_other_laws(self) -> Iterator[tuple[str, float]]:
-        """Return words and torque of the other pressure laws, at the same force."""
-        return ((words, self.again(brake).torque) for words, brake in self._other_laws())
-
     def doubtful(self) -> Iterator[Any]:
-        """Yield results at the same load with less and more friction, and under other pressure laws."""
-        result, given = self.result, self.design.load.given | {"reverse": self.result.reverse}
-        for part in (1 - PART, 1 + PART):
-            yield type(self).solver(result.brake, friction=part * result.friction, **given)
-        for _, brake in self._other_laws():
-            yield type(self).solver(brake, friction=result.friction, **given)
+        """Yield results at the same load with less and more friction, and under other pressure laws.
 
-    def _other_laws(self) -> Iterator[tuple[str, Any]]:
+        A brake that then locks, of which no torque can be demanded, is at the same force.
+        """
+        brake, mu = self.result.brake, self.result.friction
+        others = ((other, mu) for _, other in self.other_laws())
+        for varied, friction in (*((brake, part * mu) for part in (1 - PART, 1 + PART)), *others):
+            try:
+                yield self.at_load(varied, friction)
+            except InvalidValue:
+                yield self.again(varied, friction=friction)
+
+    def at_load(self, brake: Any, friction: Any) -> Any:
+        """Solve another brake, or with other friction, at the load of the file."""
+        given = self.design.load.given | {"reverse": self.result.reverse}
+        return type(self).solver(brake, friction=friction, **given)
+
+    def other_laws(self) -> Iterator[tuple[str, Any]]:
         """Yield the name of each other pressure law, and the brake under this law, if possible."""
         brake = self.result.brake
         for law in (each for each in brake.laws if each != brake.law):

@@ -27,11 +27,11 @@ from beamdyn.common.edge.command_options import (
     SomeFolder,
     SpreadOptions,
     VaryOptions,
-    check_folder,
     write,
 )
-from beamdyn.common.edge.console import at_work, console, show
+from beamdyn.common.edge.console import at_work, show
 from beamdyn.common.edge.exit_codes import NoAnswer, examples
+from beamdyn.common.edge.reports import report_verdicts
 from beamdyn.common.results.pictures import save_figure
 from beamdyn.common.screens.app_command import add_command
 from brakes.answers import STANDARD
@@ -420,16 +420,7 @@ def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
     """
     from brakes.reproduce import compare_all
 
-    check_folder("output", output)
-    screen = console()
-    screen.print(f"Pictures go into the folder {output} (--output names another).\n")
-    checked = compare_all(screen, output)
-    unexpected = sum(not verdict.as_expected for verdict in checked)
-    if unexpected:
-        raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")
-    screen.print(
-        f"\nAll {len(checked)} verdicts are as expected: agreement, but for what is explained above."
-    )
+    report_verdicts(compare_all, output)
 
 
 def make_program() -> Program:

@@ -98,7 +98,8 @@ def find(
     runs = [*_runs(answers, x, y)]
     pieces = [piece for run in runs for piece in _pieces(answers, run)]
     target = _unrounded(pieces, target, rounding)
-    ranges = _level(pieces, target)
+    level = [x[[0, -1]] for x, y in pieces if step(y[0], y[-1]) == 0 == step(y[0], target)]
+    ranges = np.array(level).reshape(-1, 2)
     values, jumps = _solve(answers, pieces, ranges, target)
     return Solutions(
         target=target,
@@ -345,12 +346,6 @@ def _unrounded(pieces: Sequence[Curve], target: float, rounding: float) -> float
     heights = [float(y[0]) for _, y in pieces if step(y[0], y[-1]) == 0]
     nearest = min(heights, key=lambda height: abs(height - target), default=target)
     return nearest if abs(nearest - target) <= rounding else target
-
-
-def _level(pieces: Sequence[Curve], target: float) -> np.ndarray:
-    """Find the ranges of inputs, one in each row, over which the answer is level at the wanted value."""
-    ends = [x[[0, -1]] for x, y in pieces if step(y[0], y[-1]) == 0 == step(y[0], target)]
-    return np.array(ends).reshape(-1, 2)
 
 
 def _solve(

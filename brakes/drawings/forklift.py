@@ -7,9 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Arrow, Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.plots.curves import curves
@@ -17,12 +15,6 @@ from beamdyn.common.results.pictures import COLOURS
 from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.duo_servo import free_bodies, positions
 from brakes.forklift import InternalForces, Kinematics, Stop, Truck
-
-
-def answer_figure(stop: Stop | None, followed: Kinematics | None, forces: InternalForces | None) -> Figure:
-    """Draw truck, both stages of the brake's motion, and free bodies of the shoes, whichever are given."""
-    rows = answer_drawings(stop, followed, forces, followed)
-    return figure_of(rows) if rows else Figure(figsize=(10.0, 4.0))
 
 
 def answer_drawings(

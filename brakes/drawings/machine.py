@@ -41,18 +41,15 @@ def pressure_chart(result: MachineResult) -> Chart:
         ChartCurve(
             lining.name,
             scale * np.r_[low, at, high],
-            1e-6 * float(lining.peak_pressure) * np.r_[0.0, _shape(result, i, at), 0.0],
+            1e-6
+            * float(lining.peak_pressure)
+            * np.r_[0.0, brake.pressure_on(i, at, float(result.friction), result.reverse), 0.0],
             dashed=bool(i % 2),
         )
         for i, lining in enumerate(result.linings)
     ]
     across = ChartAxis(brake.place.words, brake.place.shown)
     return Chart("Pressure on the linings", across, ChartAxis("pressure", "MPa", low=0.0), curves)
-
-
-def _shape(result: MachineResult, index: int, at: np.ndarray) -> np.ndarray:
-    """Compute the pressure on a lining at coordinates along it, divided by its largest value."""
-    return result.brake.pressure_on(index, at, float(result.friction), result.reverse)
 
 
 def factor_chart(result: MachineResult) -> Chart:

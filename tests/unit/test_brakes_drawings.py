@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from beamdyn.common.drawing.on_axes import figure_of
 from beamdyn.common.drawing.shapes import Outline, Symbol
 from beamdyn.common.plots.curves import curves, sweep_figure
 from brakes import drum, forklift, machines
@@ -19,7 +20,7 @@ from brakes.drawings import mechanism_parts
 from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.drum import brake_figure, drawing_of, factors, pressures
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
-from brakes.drawings.forklift import answer_drawings, answer_figure, distances, forces_over, truck
+from brakes.drawings.forklift import answer_drawings, distances, forces_over, truck
 from brakes.drawings.machine import factor_chart
 
 ROOT = Path(__file__).parents[2]
@@ -184,7 +185,7 @@ def test_duo_servo_shoes_balance_as_drawn() -> None:
 
 def test_free_bodies_of_levers_alone() -> None:
     found = forklift.internal_forces(BRAKE.find_levers(0.0106), torque=11000.0, piston_force=11650.0)
-    figure = answer_figure(None, None, found)
+    figure = figure_of(answer_drawings(None, None, found, None))
     assert len(figure.axes) == 2
 
 

@@ -60,6 +60,22 @@ def test_bad_input_names_key_value_bound_and_remedy(answer, name, old, new, part
     assert [part for part in parts if part not in err] == []
 
 
+@pytest.mark.parametrize(
+    ("name", "friction"), [("band", 0.31), ("drum", 0.95)]
+)  # they lock at 0.331 and 0.999
+def test_a_torque_just_below_self_locking_is_answered(name, friction, tmp_path, capsys):
+    text = (EXAMPLES / f"{name}.toml").read_text(encoding="utf-8")
+    for old, new in ((r"friction = [\d.]+", f"friction = {friction}"), ("force = .*", 'torque = "300 N m"')):
+        text, count = re.subn(f"(?m)^{old}", new, text)
+        assert count == 1
+    (path := tmp_path / "brake.toml").write_text(text, encoding="utf-8")
+    assert main([name, str(path)]) == DONE
+    out, err = capsys.readouterr()
+    assert (
+        re.search(r"friction -\+10 %: \d[\d.]* N m \(-[\d.]+ %\), locks", " ".join(out.split())) and not err
+    )
+
+
 def test_a_torque_of_a_brake_that_locks_cannot_be_demanded(answer):
     code, _, err = answer("band", 'force = "200 N"', 'torque = "100 N m"', "--vary", "friction=0.5:0.6:2")
     assert code in (BAD_INPUT, NO_ANSWER) and "the brake locks: no torque can be demanded of it" in err

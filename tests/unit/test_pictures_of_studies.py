@@ -113,6 +113,15 @@ def test_values_at_equal_ratios_have_an_axis_of_such():
     assert (ax.get_xscale(), ax.get_yscale()) == ("log", "linear")
 
 
+@pytest.mark.parametrize(("last", "between"), [(800.0, True), (2000.0, False)])
+def test_an_axis_of_less_than_three_decades_has_numbers_between_them(last, between):
+    given = MapInput("a", "m", np.geomspace(1.0, last, 5))
+    figure = Figure()
+    ax = plot_maps([given], [MapAnswer("c", np.arange(5.0), np.full(5, ""))], figure.subplots())
+    figure.draw_without_rendering()
+    assert any(tick.label1.get_text() == "20" for tick in ax.xaxis.get_minor_ticks()) is between
+
+
 def test_curves_with_gaps_have_rows_of_their_own():
     ax = Figure().subplots()
     for values in ([1.0, np.nan], [np.nan, 2.0]):

@@ -144,7 +144,8 @@ def locus_table(result: bd.Locus) -> Group:
         [_locus_cell(result, size, s, mode, error) for s, error in zip(shown, beyond[:, mode], strict=True)]
         for mode in range(result.frequency.shape[1])
     )
-    words = *words_of_directions(result.scene), *_other_kinds(result)
+    others = (kind for kind in map(str, np.unique(result.kind)) if kind != BENDING)
+    words = *words_of_directions(result.scene), *others
     letters = "; ".join(f"{word[0]}: mostly {word}" for word in words)
     title = (
         f"Natural frequencies{letters and f' ({letters})'}{_circuit(result)}, by {result.provenance.method}"
@@ -185,11 +186,6 @@ def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_err
     kind = str(result.kind[s, mode])
     told = words if kind == BENDING else (kind,)
     return Text(" ").join((set_apart(frequency, model_error), *(Text(word[0]) for word in told)))
-
-
-def _other_kinds(result: bd.Locus) -> list[str]:
-    """Return the kinds of modes other than bending that occur over speed."""
-    return [kind for kind in map(str, np.unique(result.kind)) if kind != BENDING]
 
 
 def locus_csv(result: bd.Locus) -> Columns:

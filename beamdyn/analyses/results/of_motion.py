@@ -140,14 +140,10 @@ def steady_table(result: bd.SteadyResponse) -> Group:
     return _table_over_speeds(result, steady_columns(result), peaks_at)
 
 
-def largest_by_direction(result: bd.SteadyResponse) -> list[np.ndarray]:
-    """Return the largest tip deflection in the bending direction and across, if both are modelled."""
-    return [result.largest_tip(direction) for direction in range(len(words_of_directions(result.scene)))]
-
-
 def steady_columns(result: bd.SteadyResponse) -> Columns:
     """Make columns of the steady-state amplitude in each modelled direction, with errors and status."""
-    error, each = result.error * result.bound, _by_direction(result, largest_by_direction(result))
+    directions = range(len(words_of_directions(result.scene)))
+    error, each = result.error * result.bound, _by_direction(result, [*map(result.largest_tip, directions)])
     return Columns(
         *_deflections(result, error, amplitude=result.amplitude, **each, sum_of_lines=result.bound),
         Column("relative_error", result.error, words=None),

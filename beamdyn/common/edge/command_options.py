@@ -181,17 +181,6 @@ def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
     write_text(path, csv_text(rows, "\t" if path.suffix.lower() == ".tsv" else ","))
 
 
-def check_folder(option: str, folder: Path) -> None:
-    """Raise an error, before anything is computed, if a folder cannot be made or written into."""
-    there = next(place for place in (folder, *folder.absolute().parents) if place.exists())
-    if not there.is_dir():
-        raise ValueError(f"--{option} = {folder}: {there} is a file; give a folder")
-    try:
-        check_writable(there / "picture.png", force=True)
-    except OSError as error:
-        raise ValueError(f"--{option} = {folder}: {error}") from None
-
-
 def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
     """Return a function that makes a figure, and calls `draw` with the axes of this figure."""
     return partial(figure_of, draw)

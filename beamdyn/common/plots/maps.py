@@ -19,7 +19,6 @@ from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.pictures import COLOURS, Axes
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.text import Text
 
 _APART_ON_PAPER = 2.0  # least distance between two texts [px]
@@ -125,8 +124,8 @@ _LEVELS = 8  # largest number of contour lines
 _DECADES = 1.5  # range of values in decades, above which contour levels are at equal ratios
 # If an input has values at equal ratios: least ratio of the largest to the smallest value for a log axis.
 _LOGARITHMIC = 10.0
-# Ratio of the largest to the smallest value from which a logarithmic axis has numbers only at powers of ten.
-_MANY = 100.0
+# Ratio of the largest to the smallest value from which a log axis has numbers at decades alone.
+_MANY_DECADES = 1000.0
 _DIGITS = 4
 _TICKS = 6  # most steps between the numbers below a map, which may be long
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
@@ -302,7 +301,7 @@ def _set_up(ax: Axes, inputs: Sequence[MapInput], ylabel: str = "") -> None:
         inputs, (ax.xaxis, ax.yaxis), (ax.set_xscale, ax.set_yscale), strict=False
     ):
         if given.is_logarithmic:
-            scaled("log", subs=[2, 5] if max(given.values) < _MANY * min(given.values) else [])
+            scaled("log", subs=[2, 5] if max(given.values) < _MANY_DECADES * min(given.values) else [])
             axis.set_major_formatter("{x:g}")
             axis.set_minor_formatter("{x:g}")
     for axis in (ax.xaxis, ax.yaxis):

@@ -361,7 +361,8 @@ class LoadedSolver(Solver):
 
     def _solve_loaded(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Compute eigenvalues, vectors (in columns) and rounding errors at one speed."""
-        M, K, C = self.pencil.M, *self._at(speed)
+        pencil, M = self.pencil, self.pencil.M
+        K, C = pencil.K0 + speed**2 * pencil.K2, pencil.C + speed * pencil.G
         by_mass = np.linalg.solve(K, M)
         mu, y = np.linalg.eig(by_mass)
         time = np.sqrt(np.abs(mu).max())  # unit of time in which the frequencies are of order 1
@@ -373,10 +374,6 @@ class LoadedSolver(Solver):
         s, z = select_lowest(inverse[~lost] * time, y[: self.size, ~lost], count)
         norm = np.sqrt(np.einsum("nk,nm,mk->k", z.conj(), M, z).real)
         return s + 0.0, z / norm, 8 * _EPS * self.size * np.abs(s) * np.abs(inverse).max() * time
-
-    def _at(self, speed: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the stiffness, and the sum of damping and gyroscopic matrix, at a speed."""
-        return self.pencil.K0 + speed**2 * self.pencil.K2, self.pencil.C + speed * self.pencil.G
 
 
 @contextmanager

@@ -127,8 +127,10 @@ def computed_peaks(scene: Scene, data: MeasuredPeaks) -> ComputedCurves:
 def computed_history(scene: Scene, data: MeasuredHistory) -> ComputedCurves:
     """Compute the motion of a scene, delayed for the best agreement with measured histories."""
     period = _period(scene, data)
+    last = float(data.time[-1])
+    end = math.inf if scene.motion is None else scene.motion.end
     with unannounced():
-        run = simulate(scene, _end_of_run(scene, float(data.time[-1]), period / 2))
+        run = simulate(scene, max(min(last + period / 2, end), last))
     curves = [*_curves(run, data.names)]
 
     def at(t: np.ndarray) -> np.ndarray:
@@ -175,12 +177,6 @@ def _curves(run: Transient, names: Sequence[str]) -> Iterator[tuple[Callable[[np
 
 def _at_root(outputs: Callable[[np.ndarray], np.ndarray], place: int, t: np.ndarray) -> np.ndarray:
     return outputs(t)[:, 0, place]
-
-
-def _end_of_run(scene: Scene, last: float, more: float) -> float:
-    """Return the end of a transient [s]: `more` after the last measured time, up to the motion's end."""
-    end = math.inf if scene.motion is None else scene.motion.end
-    return max(min(last + more, end), last)
 
 
 def _delay(

@@ -169,10 +169,10 @@ class Cocycle:
             q, time = _products(C), m * self.period
             mean, doubt = _mean(q[:, 0])
             high = min(high, float(mean + doubt + log_twice) / (2 * time))
-            mu = np.exp(_apart(p).min(axis=0))
+            mu = np.exp(-np.diff(_values(p), axis=1).max(axis=0))
             lost = np.abs((_products(after) + p - q)[:, :-1] - k * math.log(scale))
             known = (mu > _APART) & (lost.max(axis=0) < np.log(mu) / 2)
-            known &= _over_first(q).min(axis=0) > math.log(_KNOWN)
+            known &= (_values(q) - q[:, :1])[:, :-1].min(axis=0) > math.log(_KNOWN)
             if known.any():
                 gained, doubt = _mean((q - p)[:, :-1])
                 gained, error = gained + k * (log_twice - log_scale), _CONSTANT / mu + doubt
@@ -191,16 +191,6 @@ def _products(B: np.ndarray) -> np.ndarray:
 def _values(p: np.ndarray) -> np.ndarray:
     """Convert logarithms of the products of the first singular values to those of the singular values."""
     return np.diff(p, axis=1, prepend=0.0)
-
-
-def _apart(p: np.ndarray) -> np.ndarray:
-    """Compute logarithms of the ratio of each singular value to the next."""
-    return -np.diff(_values(p), axis=1)
-
-
-def _over_first(p: np.ndarray) -> np.ndarray:
-    """Compute logarithms of the ratios of all but the last singular values to the first."""
-    return (_values(p) - p[:, :1])[:, :-1]
 
 
 def _turned(B: np.ndarray, angle: float) -> np.ndarray:

@@ -134,7 +134,9 @@ class PencilChange:
     @classmethod
     def of(cls, pencils: Sequence[SteadyPencil], weights: np.ndarray) -> PencilChange:
         """Return the weighted sum of the matrices of several equations."""
-        return cls(*(_sum(weights, [getattr(p, f.name) for p in pencils]) for f in fields(cls)))
+        return cls(
+            *(np.tensordot(weights, [getattr(p, f.name) for p in pencils], axes=1) for f in fields(cls))
+        )
 
     def between(self, left: np.ndarray, right: np.ndarray, s: complex, speed: float) -> complex:
         """Compute w^T dP v for vectors w and v, with the change dP of the dynamic stiffness at exponent s.
@@ -148,10 +150,6 @@ class PencilChange:
     def stiffness(self, speed: float) -> np.ndarray:
         """Compute the derivative of the stiffness at a speed [rad/s]."""
         return self.K0 + speed**2 * self.K2
-
-
-def _sum(weights: np.ndarray, matrices: list[np.ndarray]) -> np.ndarray:
-    return np.tensordot(weights, np.array(matrices), axes=1)
 
 
 @dataclass(frozen=True)
@@ -302,7 +300,9 @@ def changes_of(model: Model, numbers: Sequence[SceneNumber]) -> Changes:
         try:
             nearby = _resolved(number, lambda value, name=number.name: _pencils(model, name, value))
         except InvalidValue as error:
-            of_fine, of_coarse = (_unknown(len(pencil.M)) for pencil in steady_pencils(model))
+            of_fine, of_coarse = (
+                PencilChange(*np.full((5, *pencil.M.shape), np.nan)) for pencil in steady_pencils(model)
+            )
             refusals.append(f"{number.name} cannot change alone, so that it has no derivative: {error}")
             lacks, weights = of_fine, np.zeros(1)
         else:
@@ -365,7 +365,3 @@ def steady_pencils(model: Model) -> tuple[SteadyPencil, SteadyPencil]:
     """Return the equations of a model at steady speeds, and those of its coarser model."""
     fine, coarse = model.equations.steady(), model.equations.coarse
     return fine, model.coarser.equations.steady() if coarse is None else fine.part(coarse)
-
-
-def _unknown(size: int) -> PencilChange:
-    return PencilChange(*(np.full((size, size), np.nan) for _ in range(5)))
