@@ -55,6 +55,18 @@ def test_same_locus_and_critical_speed(name: str) -> None:
     np.testing.assert_allclose(bd.critical_speed(scene), bd.critical_speed(scene, "fem"), rtol=1e-6)
 
 
+def test_the_error_of_a_blade_of_many_stations_is_known_of_both() -> None:
+    stations = np.linspace(0, 1, 30)
+    rough = np.exp(0.1 * np.random.default_rng(1).standard_normal((2, 30)))
+    mass, stiffness = (
+        bd.Table(stations, 10 ** (-fall * stations) * each) for fall, each in zip((1, 3), rough, strict=True)
+    )
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, mass, stiffness), bd.Mount(0.1, np.pi))
+    ritz, fem = (bd.natural_modes(scene, 1.0, 4, discretization) for discretization in ("ritz", "fem"))
+    assert (np.abs(ritz.frequency / fem.frequency - 1) <= ritz.error + fem.error).all()
+    assert fem.error.max() < 1e-5
+
+
 def test_a_breakpoint_that_changes_nothing_changes_nothing() -> None:
     split = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, breakpoints=(0.3, 0.55))
     whole = bd.natural_modes(HARVESTER, 50.0)

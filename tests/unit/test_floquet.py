@@ -118,6 +118,13 @@ def test_a_chart_of_a_harvester_is_that_of_its_scenes():
     assert bd.floquet_multipliers(alone, 1).growth_rate == pytest.approx(chart.growth_rate[1, 1], rel=1e-9)
 
 
+def test_a_beam_on_a_hinge_that_is_damped_by_its_mass_decays_at_half_of_that():
+    mount = bd.Mount(0.1, math.pi, root_stiffness=0.0)
+    found = bd.floquet_multipliers(bd.Scene(STRIP, mount, PULSATING, damping=bd.Damping(mass_factor=1.0)))
+    assert found.status == "stable" and found.growth_rate_error < 1e-8
+    assert found.growth_rate == pytest.approx(-0.5, abs=found.growth_rate_error)
+
+
 def test_multipliers_of_a_beam_with_precone_are_those_of_its_modes_where_nothing_pulsates():
     mount = bd.Mount(0.1, math.pi, math.pi / 2, precone=0.3)
     scene = bd.Scene(STRIP, mount, bd.PulsatingRotation(50.0, 0.0, 20.0), damping_ratio=0.01)

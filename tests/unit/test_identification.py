@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.scene.numbers import with_numbers
@@ -33,6 +34,16 @@ def test_scales_of_a_blade_of_many_stations_are_found():
     frequencies = bd.frequency_locus(with_numbers(blade, true), speeds, 3).frequency
     found = bd.identify(blade, bd.MeasuredFrequencies(frequencies, speeds), dict.fromkeys(true))
     np.testing.assert_allclose(found.value, [*true.values()], rtol=1e-7)  # as above
+
+
+def test_physics_that_is_chosen_automatically_is_that_of_the_fit():
+    twist = Polynomial([0.0, 0.5])
+    beam = bd.Beam.from_stiffness(1.02, 1.0, 100.0, second_bending_stiffness=250.0, twist=twist)
+    data = bd.MeasuredFrequencies(
+        bd.natural_modes(bd.Scene(beam, physics=bd.Physics(planes=2)), 0.0, 4).frequency, uncertainty=1e-3
+    )
+    longer = bd.Scene(replace(beam, length=1.0), physics="auto")
+    assert bd.identify(longer, data, {"beam.length": (0.9, 1.1)}).value == pytest.approx([1.02], rel=1e-6)
 
 
 def test_intervals_cover_the_numbers_behind_noisy_data():

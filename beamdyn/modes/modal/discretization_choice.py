@@ -42,8 +42,9 @@ _MANY_ON_EACH = 2  # number of modes per segment above which moments need more f
 # lacks functions may be stated too small.  Twisted sections need fewer, because forces in both directions
 # bend them.
 _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
-# Smallest number of elements on a segment with a boundary layer, so that half as many resolve it too.
-_ON_LAYERS = 8
+# Smallest number of elements on a segment, so that the third of three meshes has a quarter as many on each;
+# and on one with a boundary layer, so that half as many resolve it too.
+_ON_EACH, _ON_LAYERS = 4, 8
 _OF_ELEMENTS = 0.1  # accuracy that determines the length of boundary layers with finite elements
 _MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"
@@ -278,7 +279,8 @@ def _first_fem(
     # The import is inside the function because scikit-fem is slow to import.
     from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem
 
-    least, on_each = min(16 * segments, MOST_REFINED) if cheapest else 80, _ON_LAYERS if has_layers else 2
+    least = min(16 * segments, MOST_REFINED) if cheapest else 80
+    on_each = _ON_LAYERS if has_layers else _ON_EACH
     return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
 
 

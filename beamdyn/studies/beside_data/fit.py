@@ -25,7 +25,7 @@ from beamdyn.common.spreading.statistics import seeded
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.model import Model, kinds_of_modes
-from beamdyn.modes.modes import natural_modes
+from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
@@ -67,25 +67,34 @@ class Fitting:
     solved: list[int] = field(default_factory=lambda: [0])  # number of eigenproblems solved so far
 
     @cached_property
-    def start(self) -> Scene:
-        """Scene from which fits start, with a root spring or tip body added if a free number needs it."""
-        return opened(self.scene, [number.path for number in self.numbers])
-
-    @cached_property
     def modes(self) -> int:
         """Number of modes computed at each speed."""
         return self.data.frequency.shape[1] + _MORE_MODES
 
     @cached_property
-    def discretization(self) -> Discretization:
-        """Basis that suffices at the highest speed; all scenes of the fit are solved in it."""
+    def _fastest(self) -> Modes:
+        """Modes at the highest speed, whose basis and physics suffice at all speeds.
+
+        The scene has a root spring or tip body added if a free number needs it.
+        """
+        opening = opened(self.scene, [number.path for number in self.numbers])
         with unannounced():
-            found = natural_modes(self.start, float(np.abs(self.data.speeds).max()), self.modes)
+            found = natural_modes(opening, float(np.abs(self.data.speeds).max()), self.modes)
         if found.scene.physics.large_deflection:
             remedy = Words("leave it out, or try values by ", Named("bd.study", "beamdyn study"))
             bound = "a fit uses the derivatives of the linear equations"
             raise InvalidValue("physics.large_deflection", True, bound, remedy)
-        return found.model.discretization
+        return found
+
+    @property
+    def start(self) -> Scene:
+        """Scene from which fits start, with its physics chosen if it was "auto"."""
+        return self._fastest.scene
+
+    @property
+    def discretization(self) -> Discretization:
+        """Basis in which all scenes of the fit are solved."""
+        return self._fastest.model.discretization
 
     def scene_at(self, x: Sequence[float] | np.ndarray) -> Scene:
         """Return the scene whose free numbers have the values that belong to the variables x (p,)."""

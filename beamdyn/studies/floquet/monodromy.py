@@ -120,6 +120,8 @@ _FEWEST = 12  # smallest number of steps in a period of the motion, which resolv
 COARSER_STEPS = 2 / 3  # ratio of the number of steps of the second solution to that of the first
 # Assumed ratio of the errors of the two solutions; the ratio tends to (3/2)^16 = 650 for small steps.
 _EXCESS = 100.0
+# Ratio of a mode's frequency at rest to that of the period, below which the mode is scaled by the latter.
+_SLOWEST = 1e-3
 _SAMPLES = 64  # number of times in a period at which the stiffness is evaluated to find its maximum
 _ROUNDING = 4 * np.finfo(float).eps  # rounding error of a step, relative to the size of its matrix
 
@@ -182,9 +184,12 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
 
 
 def _scale(equations: Equations, period: float) -> np.ndarray:
-    """Return factors of the state: for displacements a frequency, at rest or of the period; else 1."""
-    frequency = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"])))
-    frequency = np.where(frequency > 0, frequency, 2 * math.pi / period)
+    """Return factors of the state: for displacements a frequency, at rest or of the period; else 1.
+
+    That at rest is within rounding of 0 for a beam that turns freely about its root.
+    """
+    frequency, turning = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"]))), 2 * math.pi / period
+    frequency = np.where(frequency > _SLOWEST * turning, frequency, turning)
     return np.concatenate([frequency, np.ones(equations.size)])
 
 
