@@ -191,7 +191,13 @@ def random_response(
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
 
     def density(model: ModelAtSpeed) -> np.ndarray:
-        return _density(_expand(model, model.drives(drive), seen), spectrum, speed, f)
+        """Compute the one-sided density at f [Hz] from the input's at +-f - h n, h being a harmonic."""
+        total = np.zeros(len(f))
+        for h, H in _expand(model, model.drives(drive), seen).items():
+            size = np.abs(H(2j * np.pi * f)) ** 2
+            there = np.abs(f - h * speed / _TURN)
+            total += size * (spectrum.at(there) if isinstance(spectrum, spectra.PowerSpectrum) else spectrum)
+        return total
 
     of_psd = evaluate_also(refined, density)
     parametric = mean_square.parametric_term(model, drive, spectrum)
@@ -304,24 +310,6 @@ def _mean_square(
     if isinstance(spectrum, spectra.PowerSpectrum):
         return sum(H.mean_square(spectrum, h * speed / _TURN) for h, H in transfers.items())
     return sum(H.mean_square_of_white(spectrum) for H in transfers.values())
-
-
-def _density(
-    transfers: dict[int, mean_square.PartialFractions],
-    spectrum: spectra.PowerSpectrum | float,
-    speed: float,
-    f: np.ndarray,
-) -> np.ndarray:
-    """Compute the one-sided density of the response at f [Hz] from the input's at +-f - h n.
-
-    Here h is a harmonic of the rotation, and n the number of turns per second.
-    """
-    total = np.zeros(len(f))
-    for h, H in transfers.items():
-        size = np.abs(H(2j * np.pi * f)) ** 2
-        there = np.abs(f - h * speed / _TURN)
-        total += size * (spectrum.at(there) if isinstance(spectrum, spectra.PowerSpectrum) else spectrum)
-    return total
 
 
 def _warnings(

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any, ClassVar
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers
+from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.result import Result
 
 # Relative distance from self-locking within which a brake without an equilibrium counts as locked
@@ -43,6 +45,32 @@ class SlidesOrLocks(Result):
         given = self.friction, self.locking_friction, self.locked
         mu, least, locked = (np.broadcast_to(x, (count,)) for x in given)
         return {i: _say_locked(self.grips, mu[i], least[i]) for i in np.flatnonzero(locked).tolist()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class RubbingResult(SlidesOrLocks):
+    """Base of results of whole brakes whose linings rub; arrays have one entry per case.
+
+    Attributes
+    ----------
+    friction : ndarray
+        Coefficient of friction.
+    torque, peak_pressure : ndarray
+        Torque of the brake [N m], largest pressure on any lining [Pa]; nan where the brake locks.
+    c_star, c_star_slope : ndarray
+        Brake factor torque / (force radius), and its derivative with respect to the friction.
+    locking_friction, margin, locked : ndarray
+        Friction at self-locking, margin to this, and whether the brake locks.
+    """
+
+    friction: Numbers
+    torque: Annotated[Numbers, Meaning("N m", "torque of the brake")]
+    peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure on a lining", "MPa")]
+    c_star: Annotated[Numbers, Meaning("", "brake factor C* = torque / (force radius)")]
+    c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
+    locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
+    margin: Annotated[Numbers, Meaning("", "margin to self-locking, 1 - mu / locking mu")]
+    locked: Numbers
 
 
 def _say_locked(grips: str, friction: np.ndarray, locking: np.ndarray, where: str = "") -> str:

@@ -14,7 +14,7 @@ from beamdyn.common.inputs.checks import flag, kind, refuse, set_fields, several
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.common.loads import take_load
-from brakes.common.locking import SlidesOrLocks
+from brakes.common.locking import RubbingResult
 from brakes.drum.shoe import Shoe, ShoeResult, integrals, solve_shoe
 
 
@@ -110,7 +110,7 @@ def duplex(first: Shoe, second: Shoe | None = None) -> DrumBrake:
 
 
 @dataclass(frozen=True)
-class BrakeResult(SlidesOrLocks):
+class BrakeResult(RubbingResult):
     """Forces in a drum brake.
 
     Attributes
@@ -144,15 +144,7 @@ class BrakeResult(SlidesOrLocks):
     brake: DrumBrake
     reverse: bool
     shoes: tuple[ShoeResult, ...]
-    friction: Numbers
     force: Annotated[Numbers, Meaning("N", "force on each shoe")]
-    torque: Annotated[Numbers, Meaning("N m", "torque of the brake")]
-    peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure on a lining", "MPa")]
-    c_star: Annotated[Numbers, Meaning("", "brake factor C* = torque / (force radius)")]
-    c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
-    locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
-    margin: Annotated[Numbers, Meaning("", "margin to self-locking, 1 - mu / locking mu")]
-    locked: Numbers
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one-line summary; see `Result.headline`."""

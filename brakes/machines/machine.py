@@ -20,7 +20,7 @@ from beamdyn.common.inputs.checks import flag, kind, one_of, refuse
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned
 from brakes.common.loads import take_load
-from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks
+from brakes.common.locking import LEAST_MARGIN, RubbingResult
 
 _EPS = np.finfo(float).eps
 # Imaginary part of the friction for complex-step derivatives, which do not cancel digits.
@@ -165,7 +165,7 @@ class LiningResult:
 
 
 @dataclass(frozen=True)
-class MachineResult(SlidesOrLocks):
+class MachineResult(RubbingResult):
     """Forces in a brake whose linings are pressed by one force.
 
     At or past self-locking the formulas do not hold: force, torque, pressure and factors are then nan,
@@ -204,16 +204,8 @@ class MachineResult(SlidesOrLocks):
 
     brake: Machine
     reverse: bool
-    friction: Numbers
     force: Annotated[Numbers, Meaning("N", "actuating force")]
-    torque: Annotated[Numbers, Meaning("N m", "torque of the brake")]
-    peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure on a lining", "MPa")]
-    c_star: Annotated[Numbers, Meaning("", "brake factor C* = torque / (force radius)")]
-    c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
     radius: Annotated[Numbers, Meaning("m", "radius that C* refers to", "mm")]
-    locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
-    margin: Annotated[Numbers, Meaning("", "margin to self-locking, 1 - mu / locking mu")]
-    locked: Numbers
     error: Annotated[Numbers, Meaning("", "bound of the relative error")]
     linings: tuple[LiningResult, ...]
 

@@ -1,6 +1,6 @@
 """Published numbers on brakes beside computed ones, consequences of the papers' errors, and figures.
 
-The modules `*_as_printed` and `newton` contain the papers' own mechanics, which is partly wrong; the rest of
+The modules `*_as_printed` contain the papers' own mechanics, which is partly wrong; the rest of
 `brakes` contains only the corrected mechanics.
 """
 

@@ -94,6 +94,7 @@ BASES = {
     "TellsKinds",
     "SpanLoads",
     "SlidesOrLocks",
+    "RubbingResult",
 }
 MAKERS: dict[str, Callable[[], Result]] = {
     "Actuation": lambda: chain.actuate(PEDAL, LINE),
