@@ -99,7 +99,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
 
 
 def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretization) -> RotatingBeam:
-    """Replace a beam's stiffness by that of 6 x 6 section stiffness matrices."""
+    """Replace a beam's stiffness by that of 6 x 6 section stiffness matrices, without damping."""
     beam, model, linear = scene.modelled_beam, rotating.beam, rotating.linear
     assert beam.matrices is not None
     xi = model.stations.quadrature.xi
@@ -114,7 +114,7 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
         model = replace(model, functions=strains.reshape(linear.size, *law.shape[1:]), slopes=None)
     K = bent_beam.elastic_stiffness(model.stations, model.functions, law)
     linear = replace(linear, terms=(*terms_of_blocks(linear, "stiffness", K, 0),))
-    return replace(rotating, beam=replace(model, stiffness=K), linear=linear)
+    return replace(rotating, beam=replace(model, stiffness=K, damping=np.zeros_like(K)), linear=linear)
 
 
 def _with_damping(rotating: RotatingBeam, scene: Scene) -> RotatingBeam:
