@@ -25,7 +25,7 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physics
-from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
 from beamdyn.scene.validity import check_speeds
 
 _MODES = 5  # number of modes for which physics and trial functions are chosen, if all functions are kept
@@ -54,7 +54,8 @@ def check_linear(
         scene, [speed], modes or _MODES, barred={LARGE_DEFLECTION.name: _STRAIGHT} | dict(barred)
     )
     if scene.physics.large_deflection:
-        raise InvalidValue("physics.large_deflection", True, _STRAIGHT, "leave large_deflection out")
+        remedy = how_without_large_deflection(scene.beam)
+        raise InvalidValue("physics.large_deflection", True, _STRAIGHT, remedy)
     return scene, speed
 
 

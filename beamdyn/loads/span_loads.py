@@ -30,7 +30,7 @@ from beamdyn.loads.stations import (
     stations_at,
 )
 from beamdyn.modes.repeated import JudgedByRepeating
-from beamdyn.scene.scene import Scene, SceneResult
+from beamdyn.scene.scene import Scene, SceneResult, how_without_large_deflection
 from beamdyn.scene.validity import warn_of_elastic_limit
 
 REMEDIES = {
@@ -350,5 +350,5 @@ class AskedLoads:
 def refuse_large_deflection(scene: Scene) -> None:
     """Refuse a scene with large deflection, to which virtual work on the straight beam does not apply."""
     if scene.physics.large_deflection:
-        remedy = "leave large_deflection out where the deflection is small"
+        remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("physics.large_deflection", True, STRAIGHT, remedy)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, kind, refuse, set_fields, several
-from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE
+from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE, IN_RADIANS
 from beamdyn.scene.points import PointMass, PointSpring
 from beamdyn.scene.profile import Profile
 from beamdyn.scene.section_matrices import SectionMatrices
@@ -23,7 +23,6 @@ Beam = Any  # `beamdyn.scene.beam.Beam`, whose module imports this one
 # Distance by which a point may exceed the length, relative to the length, because of rounding errors.
 _ROUNDING = 1e-12
 _TURNS_BACK = np.pi / 2  # kink [rad] of the axis at which the axis runs back on itself
-_GIVE_RADIANS = "is it in degrees? give math.radians(...)"
 OFFSETS = ("mass_offset", "tension_offset")  # names of distances of these centres from the shear centre
 _MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}
 _BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold the tip itself"}
@@ -81,7 +80,7 @@ def check_axis(beam: Beam) -> None:
             where = f" turns by {turned[k]:.4g} rad at x/L = {angle.breakpoints[k]:.4g}"
             bound = "the axis turns back on itself: a kink must be below {limit}"
             said: dict[str, Any] = {"limit": _TURNS_BACK, "where": where}
-            raise InvalidValue(name, float(left[k]), bound, _GIVE_RADIANS, "rad", **said)
+            raise InvalidValue(name, float(left[k]), bound, IN_RADIANS, "rad", **said)
 
 
 def check_points(beam: Beam, name: str, wanted: type) -> None:

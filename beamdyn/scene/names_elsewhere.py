@@ -9,6 +9,7 @@ RECTANGULAR = Named("Beam.rectangular", "width and thickness in [beam]")
 ROLLING_WHEEL = Named("a RollingWheel", 'a table [motion] with kind = "rolling"')
 REPEATING = Named("a PulsatingRotation", 'a table [motion] with kind = "pulsating"')
 
+IN_RADIANS = Words("is it in degrees? give ", Named("math.radians(...)", "it the unit deg"))
 GIVE_IT = Words("give it to ", FROM_STIFFNESS)
 GIVE_OR_COMPUTE = Words(GIVE_IT, "; ", RECTANGULAR, " computes it")
 GIVE_OR_RATIO = Words(GIVE_IT, ", or poissons_ratio to ", RECTANGULAR)

@@ -305,16 +305,25 @@ def _check_large_deflection(scene: Scene) -> None:
             raise InvalidValue(f"mount.{name}", spring, bound, "leave it out", "N m/rad")
     if scene.beam.electrodes is not None and scene.beam.electrodes.resistance:
         bound = "with physics.large_deflection the layers of a harvester are modelled short-circuited alone"
-        remedy = "leave large_deflection out where the deflection is small"
+        remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("harvester.resistance", scene.beam.electrodes.resistance, bound, remedy, "ohm")
     if scene.beam.point_springs:
         bound = "with physics.large_deflection there are none: they would keep their direction"
-        remedy = "leave large_deflection out where the deflection is small"
+        remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     if scene.damping.tip_damper:
         bound = "with physics.large_deflection there is none: the tip also moves along the beam"
-        remedy = "give damping.ratios, or leave large_deflection out"
+        remedy = f"give damping.ratios, or {how_without_large_deflection(scene.beam)}"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
+
+
+def how_without_large_deflection(beam: Beam) -> str:
+    """Say how to do without large deflection, which a curved axis and matrices of sections need."""
+    needing = [name for name in ("sweep", "prebend") if beam.is_curved and getattr(beam, name) is not None]
+    needing += ["matrices"] if beam.matrices is not None else []
+    if not needing:
+        return "leave large_deflection out where the deflection is small"
+    return f"leave large_deflection out, and describe the beam without {' and '.join(needing)}"
 
 
 # Damper at the tip --------------------------------------------------------------------------------

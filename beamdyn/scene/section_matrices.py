@@ -28,7 +28,10 @@ LEAST = 1e-10  # smallest accepted eigenvalue of a positive definite matrix scal
 MOST_ASYMMETRY = 1e-4  # largest accepted asymmetry of a matrix scaled to a diagonal of 1
 # A row is reported if its component of the least eigenvalue's eigenvector is above this part of the largest.
 _PART = 0.1
-MOST_STRANGENESS = 1e-4  # largest accepted difference, scaled, of a mass matrix from that of a rigid section
+# Largest accepted difference of a mass matrix from that of a rigid section, over the root of the product of
+# the two diagonal entries in its row and column.
+MOST_STRANGENESS = 1e-4
+RIGID_MASS = "m on the diagonal, and m times the centre beside it; M44 = M55 + M66, and M45 = M46 = 0"
 # Properties of the beam that are diagonal entries of the stiffness.
 _DIAGONAL = {
     "axial_stiffness": 0,
@@ -158,9 +161,12 @@ class SectionMatrices(FieldsOnly):
             where = f" at x/L = {xi[k]:.4g}"
             raise InvalidValue(f"matrices.{name}", float(least[k]), bound, remedy, "", LEAST, where=where)
         if name == "mass" and (bad := np.flatnonzero(strangeness(matrices) > MOST_STRANGENESS)).size:
-            bound = "no rigid section has such a mass matrix: its forces are m on the diagonal, m c beside it"
             value, where = float(strangeness(matrices)[bad[0]]), f" at x/L = {xi[bad[0]]:.4g}"
-            raise InvalidValue("matrices.mass", value, bound, "check its entries", where=where)
+            bound = (
+                "the difference from the mass matrix of a rigid section must be at most {limit} of its size"
+            )
+            remedy = f"give {RIGID_MASS}"
+            raise InvalidValue("matrices.mass", value, bound, remedy, "", MOST_STRANGENESS, where=where)
 
 
 def _profile(name: str, stations: Sequence[float] | np.ndarray, values: np.ndarray) -> Profile:
@@ -219,6 +225,8 @@ def strangeness(matrices: np.ndarray) -> np.ndarray:
     rigid[:3, :3], rigid[:3, 3:] = m * np.eye(3)[..., None], 0.0
     rigid[0, 4], rigid[0, 5], rigid[1, 3], rigid[2, 3] = m * c3, -m * c2, -m * c3, m * c2
     rigid[3:, :3] = rigid[:3, 3:].swapaxes(0, 1)
+    # A section is flat: its moment of inertia about axis 1 is the sum of those about 2 and 3.
+    rigid[3, 3], rigid[3, 4:], rigid[4:, 3] = matrices[4, 4] + matrices[5, 5], 0.0, 0.0
     apart = np.moveaxis(matrices - rigid, 2, 0)
     roots = np.sqrt(np.abs(np.einsum("iin->ni", matrices)))
     return np.abs(apart / (roots[:, :, None] * roots[:, None, :])).max(axis=(1, 2))

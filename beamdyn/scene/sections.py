@@ -15,6 +15,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import OFFSETS, Beam, TipMass
+from beamdyn.scene.names_elsewhere import IN_RADIANS
 from beamdyn.scene.profile import Profile, combine
 
 # For each section property, the order of the derivatives of deflections that it multiplies in energies.
@@ -69,10 +70,8 @@ def _turn(beam: Beam, name: str, lever: Profile | None) -> Tensor:
     try:
         along, oblique, across = combine(_turned_values, first, second, excess, beam.twist)
     except ValueError as error:
-        remedy = "is it in degrees? give math.radians(...)"
-        raise InvalidValue(
-            "twist", float(beam.twist(np.array(1.0))), str(error), remedy, "rad", where=" at the tip"
-        ) from None
+        at_tip = float(beam.twist(np.array(1.0)))
+        raise InvalidValue("twist", at_tip, str(error), IN_RADIANS, "rad", where=" at the tip") from None
     return {(0, 0): along, (0, 1): oblique, (1, 0): oblique, (1, 1): across}
 
 

@@ -259,10 +259,18 @@ def harvest(
 
 
 @one_blas_thread()  # the matrices are small: more threads only wait for each other
-def harvested(*given: Any, compared: bool = True, **named: Any) -> Harvest:
+def harvested(
+    scene: Scene,
+    speeds: np.ndarray | Sequence[float],
+    modes: int | str,
+    tolerance: float,
+    discretization: DiscretizationChoice,
+    road: RoadRoughness | None,
+    compared: bool = True,
+) -> Harvest:
     """Compute the result of `harvest`, from its arguments; its errors are nan unless it is `compared`."""
     start = perf_counter()
-    powers = _powers(*given, **named, compared=compared)
+    powers = _powers(scene, speeds, modes, tolerance, discretization, road, compared)
     resonances = _resonances(powers.scene, powers.speeds)
     provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # time of resonances included
     found = replace(powers, resonances=resonances, provenance=provenance)

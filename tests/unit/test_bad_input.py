@@ -16,6 +16,7 @@ from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Profile, Table, as_profile
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.section_matrices import SectionMatrices
 from beamdyn.scene.sections import section_tensor
 from tests.unit.refusals import refused
 
@@ -376,3 +377,18 @@ def test_elements_refuse_a_segment_too_short_for_their_digits():
     with pytest.raises(ValueError, match=r"at least 1e-5 of the length.*discretization='ritz'"):
         frequencies(1e-6)
     assert frequencies(1e-3) == pytest.approx(frequencies(1e-3, "ritz"), rel=4e-6)  # stated
+
+
+@pytest.mark.parametrize(
+    "place, factor", [((3, 3), 1 + 2e-4), ((3, 3), 1 - 2e-4), ((4, 4), 1.1), ((3, 4), 0.01), ((3, 5), 0.01)]
+)
+def test_a_mass_matrix_of_no_flat_section_is_refused(place, factor):
+    """About its axis a flat section has the sum of the other moments of inertia, whatever its centre."""
+    centre, stiffness = np.array([0.0, 0.02, -0.03]), np.diag([1e9, 1e8, 1e8, 1e6, 4e6, 1e6])
+    lever = np.cross(np.eye(3), centre)  # rows: acceleration of the centre by turning about each axis
+    mass = 100.0 * np.block([[np.eye(3), lever.T], [lever, lever @ lever.T]])
+    mass[3:, 3:] += np.diag([3.0, 1.0, 2.0])
+    SectionMatrices.at_stations([0.0, 1.0], [stiffness] * 2, [mass] * 2)
+    mass[place] = mass[place[::-1]] = mass[place] * factor if place[0] == place[1] else factor
+    with pytest.raises(ValueError, match=r"matrices\.mass = .* at x/L = 0: .*0\.0001.*M44 = M55 \+ M66"):
+        SectionMatrices.at_stations([0.0, 1.0], [stiffness] * 2, [mass] * 2)

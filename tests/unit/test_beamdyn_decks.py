@@ -92,6 +92,13 @@ def odd(factor=1.0):
     return M
 
 
+def polar(factor=1.0):
+    """Return a mass whose inertia about z is not the sum of the others, as of no flat section."""
+    M = written.mass(factor)
+    M[5, 5] *= 1.001
+    return M
+
+
 REFUSED = [
     (
         {"blade_dat": written.blade_file(soft)},
@@ -99,6 +106,7 @@ REFUSED = [
     ),
     ({"blade_dat": written.blade_file(of_mass=lopsided)}, r"line 11: the mass .*eta = 0: .*symmetric"),
     ({"blade_dat": written.blade_file(of_mass=odd)}, r"line 11: the mass .*eta = 0: .*m on the diagonal"),
+    ({"blade_dat": written.blade_file(of_mass=polar)}, r"line 11: the mass .*eta = 0: .*inertia about z"),
     ({"blade_dat": written.blade_file(count=4)}, r"expected 4 stations of 13 lines"),
     (
         {"primary_dat": written.primary_file(((1, 0, 0, 0), *written.POINTS[1:]))},

@@ -149,3 +149,19 @@ def test_random_loads_are_written(tmp_path, capsys, finished):
         "--at = 1 m" in finished(main(["random-loads", scene, "--road", "B", "--at", "1 m"]), BAD_INPUT).err
     )
     assert "--psd, --road, --roughness: give one" in finished(main(["random-loads", scene]), BAD_INPUT).err
+
+
+@pytest.mark.parametrize(
+    "example, needing", [("iea_15_blade", "prebend and matrices"), ("swept_blade", "sweep")]
+)
+def test_loads_of_a_beam_that_needs_large_deflection_say_what_needs_it(example, needing, finished):
+    said = finished(main(["loads", str(EXAMPLES / f"{example}.toml"), "--speed", "5 rpm"]), BAD_INPUT).err
+    assert "[physics] large_deflection = true: " in said
+    assert f"leave large_deflection out, and describe the beam without {needing}\n" in said
+
+
+def test_an_angle_that_may_be_in_degrees_is_written_with_the_unit_in_a_file(tmp_path, finished):
+    text = (EXAMPLES / "swept_blade.toml").read_text()
+    (tmp_path / "blade.toml").write_text(re.sub("(?m)^sweep = .*", 'sweep = "400 rad"', text))
+    said = finished(main(["loads", str(tmp_path / "blade.toml"), "--speed", "5 rpm"]), BAD_INPUT).err
+    assert "is it in degrees? give it the unit deg" in said and "math.radians" not in said

@@ -205,6 +205,24 @@ ratios = [0.01, 0.02]
 """
 
 
+@pytest.mark.parametrize("curved", ["sweep", "prebend"])
+@pytest.mark.parametrize("discretization", [bd.Ritz(10), bd.Fem(10)], ids=str)
+def test_damping_is_of_the_modes_at_rest_of_the_curved_beam(curved, discretization):
+    axis = {curved: np.polynomial.Polynomial([0.0, np.radians(200.0)])}
+    beam = bd.Beam.rectangular(1.0, 0.05, 0.01, 70e9, 2700.0, poissons_ratio=0.3, **axis)
+    scene = bd.Scene(beam, physics=bd.Physics(planes=2, torsion=True, large_deflection=True))
+    free = bd.natural_modes(scene, 0.0, 3, discretization)
+    omega = 2 * np.pi * free.frequency
+
+    by_ratio = bd.natural_modes(replace(scene, damping_ratio=0.01), 0.0, 3, discretization).eigenvalue
+    np.testing.assert_allclose(-by_ratio.real / np.abs(by_ratio), 0.01, rtol=RTOL)
+    np.testing.assert_allclose(np.abs(by_ratio), omega, rtol=RTOL)
+    rayleigh = bd.Damping(mass_factor=0.2, stiffness_factor=1e-5)
+    found = bd.natural_modes(replace(scene, damping=rayleigh), 0.0, 3, discretization)
+    # Errors of an eigenvalue are relative to its size.
+    assert (np.abs(found.growth_rate + (0.2 + 1e-5 * omega**2) / 2) <= RTOL * omega).all()
+
+
 def test_damping_and_springs_in_a_file():
     scene = parse_scene(TEXT.replace("2 N/mm", "2 N/m"))
     assert scene.damping == bd.Damping((0.01, 0.02), 0.5, 0.002, 0.1)

@@ -253,6 +253,22 @@ def test_search_ends_at_the_critical_speed() -> None:
     assert max(c.speed for c in found) < 159.82 and "critical speed" in found.warnings[0]
 
 
+@pytest.mark.parametrize("radius", [0.2, 0.3, 0.35])
+def test_the_search_past_the_critical_speed_finds_the_crossings_below_it(radius: float) -> None:
+    """There the stiffness is 0, exactly or within rounding, and gyroscopic modes have a double root 0."""
+    mount, stretched = bd.Mount(radius, 0.1, 1.2), bd.Physics(stretch=True)
+    scene = replace(ROLLING, mount=mount, physics=stretched, gravity=9.81, motion=bd.RollingWheel(0.3, 55.0))
+    critical = bd.critical_speed(scene)
+    past, below = (
+        bd.resonance_speeds(scene, v, discretization=bd.Ritz(10)) for v in (2 * critical, critical)
+    )
+    assert [c.kind for c in past] == ["forced", "parametric"]  # of mode 1 and the line of the rotation
+    near = bd.resonance_speeds(scene, critical * (1 - 1e-6), discretization=bd.Ritz(10))
+    for found in (past, below):
+        for one, other in zip(found, near, strict=True):
+            assert abs(one.speed - other.speed) <= (one.error + other.error) * other.speed
+
+
 def test_elements_agree() -> None:
     ritz, fem = (
         bd.resonance_speeds(ROLLING, 150.0, 1, discretization=discretization)

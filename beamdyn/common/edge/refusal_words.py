@@ -57,8 +57,8 @@ def as_typed(error: Exception) -> str:
         named = in_unit_of(named, text or _USUAL.get(error.unit, ""))
     elif text and _says_more(text, error.value):
         named = replace(named, value=text)
-    quoted = name.startswith("-") and isinstance(named.value, str)
-    return say(InvalidInput(**vars(named)) if quoted else named)
+    written = isinstance(named.value, bool) or (name.startswith("-") and isinstance(named.value, str))
+    return say(InvalidInput(**vars(named)) if written else named)
 
 
 def _says_more(text: str, value: object) -> bool:

@@ -10,7 +10,7 @@ from typing import Any, Self, get_args
 
 import numpy as np
 
-from beamdyn.common.words import Named, Part, worded
+from beamdyn.common.words import Named, Part, Words, worded
 
 MOST = 1e50  # largest input in SI units, so that products of six such numbers are far from overflow
 _LONGEST = 60  # most characters of a value that a message shows
@@ -275,7 +275,8 @@ def within(name: str, value: object, least: float, most: float) -> float:
 def angle(name: str, value: object) -> float:
     """Return an angle [rad]; raise an error if it exceeds one turn in either direction."""
     number = real(name, value, "rad")
-    remedy = f"if {number:g} degrees were meant, give math.radians({number:g})"
+    degrees = Named(f"math.radians({number:g})", f'"{number:g} deg"')
+    remedy = Words(f"if {number:g} degrees were meant, give ", degrees)
     refuse(abs(number) > 2 * math.pi, name, number, "rad", "it is beyond one turn (2 pi)", remedy)
     return number
 

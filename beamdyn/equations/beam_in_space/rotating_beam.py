@@ -112,11 +112,15 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
     (c, s), (cosine, sine) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     axis, load = -np.array([sine, cosine * s, cosine * c]), forces_at_tip(scene, model.at(np.zeros(n)))
     rotating = RotatingBeam(model, linear, axis, load)
-    return rotating if beam.matrices is None else _with_law(rotating, scene, discretization)
+    if beam.matrices is not None:
+        rotating = _with_law(rotating, scene, discretization)
+    elif not (initial.any() or kinks[:, 1:].any()):  # the axis is straight, as in the linear equations
+        return rotating
+    return _with_damping(rotating, scene) if scene.is_damped else rotating
 
 
 def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretization) -> RotatingBeam:
-    """Replace a beam's stiffness and modal damping by values from 6 x 6 section stiffness matrices."""
+    """Replace a beam's stiffness by that of 6 x 6 section stiffness matrices, without damping."""
     beam, model, linear = scene.modelled_beam, rotating.beam, rotating.linear
     assert beam.matrices is not None
     xi = model.stations.quadrature.xi
@@ -130,13 +134,19 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
         strains = _strains_by_forces(model, law, size)[components]
         model = replace(model, functions=strains.reshape(linear.size, *law.shape[1:]), slopes=None)
     K = bent_beam.elastic_stiffness(model.stations, model.functions, law)
-    model = replace(model, stiffness=K, damping=np.zeros_like(K))
     linear = replace(linear, terms=(*terms_of_blocks(linear, "stiffness", K, 0),))
-    undamped = replace(rotating, beam=model, linear=linear)
-    if not scene.is_damped:
-        return undamped
-    linear = replace(linear, terms=(*linear.terms, *damping_terms(undamped.about_straight, scene)))
-    return replace(undamped, beam=replace(model, damping=linear.matrices[1]["unity"]), linear=linear)
+    return replace(rotating, beam=replace(model, stiffness=K, damping=np.zeros_like(K)), linear=linear)
+
+
+def _with_damping(rotating: RotatingBeam, scene: Scene) -> RotatingBeam:
+    """Replace a beam's damping by that of its modes at rest, about the unloaded beam with its curved axis."""
+    kept = (t for t in rotating.linear.terms if (t.order, t.quantity) != (1, "unity"))
+    undamped = replace(rotating, linear=replace(rotating.linear, terms=(*kept,)))
+    linear, damping = undamped.linear, damping_terms(undamped.about_straight, scene)
+    linear = replace(linear, terms=(*linear.terms, *damping))
+    none = np.zeros_like(rotating.beam.stiffness)
+    damped = replace(rotating.beam, damping=linear.matrices[1].get("unity", none))
+    return replace(undamped, beam=damped, linear=linear)
 
 
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:

@@ -244,9 +244,10 @@ def _check_matrices(
         (least_eigenvalues(ours) <= LEAST, "a positive definite matrix: this section deforms by itself"),
     ]
     if name == "mass":
-        checks += [
-            (strangeness(ours) > MOST_STRANGENESS, "a rigid section: m on the diagonal, m times its centre")
-        ]
+        wanted = (
+            "m on the diagonal, m times the centre beside it, and the sum of the others as inertia about z"
+        )
+        checks += [(strangeness(ours) > MOST_STRANGENESS, wanted)]
     for bad, wanted in checks:
         if bad.any():
             k = int(bad.argmax())

@@ -255,7 +255,7 @@ class Solver(Eigensolver):
         stiffness = 1 + speeds[:, None] ** 2 * growth
         with np.errstate(divide="ignore", invalid="ignore"):
             q = (basis.T @ self.pencil.f2) * speeds[:, None] ** 2 / stiffness
-        values = np.stack([q @ (basis.T @ output) for output in outputs], axis=1)
+            values = np.stack([q @ (basis.T @ output) for output in outputs], axis=1)
         return np.where(stiffness.min(axis=1, keepdims=True) > 0, values, np.nan)
 
     def _solve_diagonal(self, speeds: np.ndarray, count: int) -> Eigen:
@@ -290,7 +290,7 @@ class Solver(Eigensolver):
         stiffness = 1 + speed**2 * growth
         damping = T.T @ (pencil.C + speed * pencil.G) @ T
         time = np.sqrt(1 / self.lowest_at_rest)  # unit of time in which the frequencies are of order 1
-        if pencil.shift or self._has_massless:
+        if pencil.shift or self._has_massless or not stiffness.all():
             K = np.diag(stiffness) - pencil.shift * mass
             R = condense(mass, K) if self._has_massless else np.eye(n)
             inverse, y = solve_first_order(*(R.T @ A @ R for A in (mass / time**2, damping / time, K)))
@@ -307,7 +307,7 @@ class Solver(Eigensolver):
             inverse, y = inverse[others], y[:, others]
         s, z = select_lowest(inverse * time, y[:n], count)
         norm = np.sqrt(np.maximum(np.einsum("nk,nm,mk->k", z.conj(), mass, z).real, 0.0))
-        condition = (1 + speed**2 * np.abs(growth)).max() / np.abs(stiffness).min()
+        condition = (1 + speed**2 * np.abs(growth)).max() / max(np.abs(stiffness).min(), _EPS)
         rounding = 8 * _EPS * (np.abs(s) * np.abs(inverse).max() * time + condition)
         lost = norm == 0  # the modal mass is below rounding, so the mode is unknown
         modes = s, T @ (z / np.where(lost, np.inf, norm)), np.where(lost, np.inf, rounding)

@@ -48,7 +48,9 @@ def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.n
     finite = np.isfinite(s)
     s, y = s[finite], y[:, finite]
     least = _EPS * np.abs(s).max()
-    return 1 / np.where(np.abs(s) < least, 1j * least, s), y
+    none = np.flatnonzero(np.abs(s) < least)
+    s[none] = 1j * least * (-1.0) ** np.arange(len(none))  # two of them are one conjugate pair
+    return 1 / s, y
 
 
 def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
