@@ -269,12 +269,17 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
 
 
 def _equilibrium(system: ModalSystem) -> np.ndarray:
-    """Compute the static equilibrium under the loads at time 0; a ValueError if the root turns freely."""
+    """Compute the static equilibrium under the loads at time 0; a ValueError if the root turns freely.
+
+    A circuit is without voltage there, and the flux, its last coordinate, begins at 0.
+    """
     _, K, f = system.coefficients(np.zeros(()))
     if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
         bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
         raise InvalidValue("initial", "equilibrium", bound, "give 'rest', or a root_stiffness")
-    return np.linalg.solve(K, f)
+    bent, found = slice(len(f) - (system.equations.voltage is not None)), np.zeros_like(f)
+    found[bent] = np.linalg.solve(K[bent, bent], f[bent])
+    return found
 
 
 def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:

@@ -1,6 +1,7 @@
 """Derivatives by the numbers of a scene: closed forms, differences, other methods, and what has none."""
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -91,6 +92,18 @@ def test_scales_of_a_blade_of_many_stations(name):
     found = bd.frequency_sensitivities(STATIONS, 1.9, 3, [f"beam.scale.{name}"])
     assert "bending moments" in found.provenance.method
     reference = differences(STATIONS, found.inputs[0], lambda s: bd.natural_modes(s, 1.9, 3).frequency)
+    np.testing.assert_allclose(found.derivative[0], reference, rtol=0, atol=1e-7)  # of the differences
+    assert (found.error < 1e-7).all()
+
+
+@pytest.mark.parametrize("name", ["length", "point_mass[0].position", "point_spring[0].position"])
+def test_places_of_points_on_a_blade_of_many_stations(name):
+    """Relative to the length, they move: the same functions are integrated over other cells."""
+    points = {"point_masses": [bd.PointMass(22.0, 500.0)], "point_springs": [bd.PointSpring(30.0, 2e3)]}
+    scene = replace(STATIONS, beam=replace(STATIONS.beam, **points))
+    found = bd.frequency_sensitivities(scene, 1.9, 3, [f"beam.{name}"])
+    assert "bending moments" in found.provenance.method
+    reference = differences(scene, found.inputs[0], lambda s: bd.natural_modes(s, 1.9, 3).frequency)
     np.testing.assert_allclose(found.derivative[0], reference, rtol=0, atol=1e-7)  # of the differences
     assert (found.error < 1e-7).all()
 

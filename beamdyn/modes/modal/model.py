@@ -24,13 +24,14 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.common.results.statements import OUTSIDE, Statement
 from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.circuit import coupling_of
-from beamdyn.equations.discretization import Discretization
+from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.equations.functions_of_nearby_beam import NearbySpaces
 from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
+from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
 from beamdyn.modes.modal.solvers import solver_of
-from beamdyn.scene.beam import Beam
 from beamdyn.scene.motion import Motion
 from beamdyn.scene.mount import RIGHT_ANGLE
 from beamdyn.scene.scene import Scene, check_axis
@@ -70,27 +71,29 @@ class Model(FieldsOnly):
     @cached_property
     def _of_fields(self) -> Equations:
         """Equations of motion built from the displacement fields of the straight beam."""
-        return self._in_functions_of(self.scene.modelled_beam)
+        return self._over(self.discretization.spaces(self.scene.modelled_beam))
 
     def equations_near(self, scene: Scene) -> Equations:
         """Build the equations of a scene that differs little, in this model's functions where they suit it.
 
         Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
-        properties of the beam, may differ abruptly after the smallest change of these.
+        properties of the beam, may differ abruptly after the smallest change of these; other functions follow
+        the breakpoints.
         """
-        nearby = Model(scene, self.discretization)
-        beam = self.scene.modelled_beam
-        if scene.beam.matrices is not None or scene.modelled_beam.breakpoints != beam.breakpoints:
-            return nearby.equations
-        return nearby._in_functions_of(beam)
+        nearby, own, other = Model(scene, self.discretization), self.scene.modelled_beam, scene.modelled_beam
+        spaces = self.discretization.spaces(own)
+        if own.breakpoints != other.breakpoints:
+            of_moments = isinstance(spaces, MomentSpaces)
+            spaces = NearbySpaces(spaces, other) if of_moments else self.discretization.spaces(other)
+        return nearby.equations if scene.beam.matrices is not None else nearby._over(spaces)
 
-    def _in_functions_of(self, beam: Beam) -> Equations:
-        """Build the equations of motion of the straight beam in the functions for a similar beam."""
+    def _over(self, spaces: Spaces) -> Equations:
+        """Build the equations of motion of the straight beam in given functions."""
         if self.scene.chooses_physics:  # other scenes have been checked: a curved axis needs other equations
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
-        return assemble_over(scene, self.discretization.spaces(beam))
+        return assemble_over(scene, spaces)
 
     @cached_property
     def coupling(self) -> dict[str, np.ndarray]:

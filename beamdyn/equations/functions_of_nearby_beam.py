@@ -1,0 +1,115 @@
+"""The functions of one beam, integrated over a beam that differs little and has its breakpoints elsewhere.
+
+To first order, a mode changes by the change of the matrices in unchanged functions.  That of the functions
+themselves would only add their rounding errors to a small difference.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+
+from beamdyn.common.results.snapshots import FieldsOnly
+from beamdyn.equations.discretization import ArcQuadrature, Cells, RootConditions, SampledSpace, product_of
+from beamdyn.equations.moment_functions import MomentSpace, MomentSpaces
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.profile import Profile, merge_breakpoints
+
+
+@dataclass(frozen=True)
+class NearbySpaces(FieldsOnly):
+    """Function spaces of one beam on another.
+
+    Parameters
+    ----------
+    given : MomentSpaces
+        Function spaces of the one beam.
+    beam : Beam
+        The other beam, with the modelled properties.
+    """
+
+    given: MomentSpaces
+    beam: Beam
+
+    def functions(self, conditions: RootConditions) -> NearbySpace:
+        """Return the trial functions of the one beam that satisfy conditions at the root."""
+        return _build_space(self, conditions)
+
+    def product(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
+    ) -> np.ndarray:
+        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        return product_of(self.functions(rows), self.functions(columns), weight, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate, without the constant one."""
+        return self.given.across
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of functions across the width of a plate in the coarser basis."""
+        return self.given.fewer_across
+
+    def shares_functions(self, other: NearbySpaces) -> bool:
+        """Whether other spaces have the functions of the same beam."""
+        return self.given.shares_functions(other.given)
+
+    @cached_property
+    def quadrature(self) -> ArcQuadrature:
+        """Gauss rule on cells on which both the functions and the properties are smooth."""
+        cells = self.given.quadrature.cells
+        ends = merge_breakpoints(np.concatenate([cells.ends, self.beam.breakpoints]))
+        return ArcQuadrature(Cells(np.array(ends), cells.points))
+
+
+@lru_cache(maxsize=16)  # fields of a scene, and pairs of fields, use the same functions
+def _build_space(spaces: NearbySpaces, conditions: RootConditions) -> NearbySpace:
+    return NearbySpace(spaces, spaces.given.functions(conditions))
+
+
+@dataclass(frozen=True)
+class NearbySpace(SampledSpace):
+    """Trial functions of one beam on another.
+
+    Parameters
+    ----------
+    spaces : NearbySpaces
+        The function spaces.
+    given : MomentSpace
+        The functions on the beam for which they were made.
+    """
+
+    spaces: NearbySpaces
+    given: MomentSpace
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """Points x/L of the Gauss rule on [0, 1]."""
+        return self.spaces.quadrature.xi
+
+    @cached_property
+    def rule(self) -> np.ndarray:
+        """Weights of the Gauss rule."""
+        return self.spaces.quadrature.weights
+
+    @cached_property
+    def samples(self) -> list[np.ndarray]:
+        """Values of the functions and of each derivative at the Gauss points, (functions, points) each."""
+        orders = range(self.given.conditions.derivatives + 1)
+        return [self.given.evaluate(self.points, order) for order in orders]
+
+    @property
+    def coarse(self) -> np.ndarray | None:
+        """Indices of functions that span the coarser discretization (the first ones); None if none do."""
+        return self.given.coarse
+
+    def end(self, order: int) -> np.ndarray:
+        """Evaluate the `order`-th derivatives of the functions at the tip."""
+        return self.given.end(order)
+
+    def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
+        """Evaluate the `order`-th derivatives of the functions at k positions xi: (functions, k)."""
+        return self.given.evaluate(xi, order)
