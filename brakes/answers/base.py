@@ -81,7 +81,7 @@ class Answer(Result, ABC):
         return ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return the reasons why designs have no answer, by index; `count` designs were solved together."""
+        """Return the reasons why designs have no result, by index; `count` designs were solved together."""
         return {}
 
     def loadable(self) -> Result | None:

@@ -1,4 +1,4 @@
-"""Answers on a forklift's brakes: the stop, the motion of the shoes, and the forces in one brake."""
+"""Results of a forklift's brakes: the stop, the motion of the shoes, and the forces in one brake."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> 
 
 @dataclass(frozen=True)
 class ForkliftAnswer(Answer):
-    """Answer on a forklift's brakes: results of some of the stages stop, kinematics and forces.
+    """Results of a forklift's brakes, for some of the stages stop, kinematics and forces.
 
     Attributes
     ----------
@@ -183,7 +183,7 @@ class ForkliftAnswer(Answer):
                 ]
                 for event, stage in zip(done.events, (done.right, done.left, done.drum), strict=True)
             ]
-            least = "rank and smallest singular value: of the mechanism's constraints, least on the way"
+            least = "rank and smallest singular value of the mechanism's constraints, least over the motion"
             heads_of_events = ("stage", "event", "rank", "smallest singular value")
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
             tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
@@ -248,7 +248,7 @@ class ForkliftAnswer(Answer):
         return ((replace(first, title=outcome(self.stop)), *others), *below)
 
     def _drawn(self, place: float | None) -> Rows:
-        """Make all drawings; for kinematics alone, the brake at a slider position from 0 to 2."""
+        """Make all drawings; for kinematics alone, the brake at rest (`place` 0) to the end of stage 2 (2)."""
         if place is not None and self.stages == ("kinematics",) and (motion := self.motion) is not None:
             turns = (
                 min(place, 1.0) * float(motion.seating_turn),
@@ -275,7 +275,7 @@ class ForkliftAnswer(Answer):
         return ()
 
 
-# From file to answer ------------------------------------------------------------------------------------
+# From file to results -----------------------------------------------------------------------------------
 
 
 _NEEDS = {
@@ -319,7 +319,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # locked wheels limit the torque, not the linings' friction
+            if chained is not None:  # locked wheels may need less than the linings' friction
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(
@@ -342,10 +342,10 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     name = "forklift"
     title = "Forklift"
     purpose = "Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part."
-    method = "closed forms of the stop and of the shoes' motion; forces by a root of one equation a shoe"
+    method = "closed forms of the stop and of the shoes' motion; forces by roots of one or two equations"
     error_from = (
-        "rounding of inputs and sums, over the margins to self-locking and to never stopping, and to the end "
-        "of the shoes' reach"
+        "rounding of inputs and sums, divided by the margins to self-locking, to never stopping, and to the "
+        "end of the shoes' reach"
     )
     model = ForkliftInput
     together = (

@@ -1,4 +1,4 @@
-"""Answers on planar mechanisms of bodies, joints and loads, as drawn and over a stroke."""
+"""Results of planar mechanisms of bodies, joints and loads, as drawn and over a stroke."""
 
 from __future__ import annotations
 

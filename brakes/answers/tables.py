@@ -19,7 +19,7 @@ from beamdyn.common.results.columns import evenly_spread, meanings
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
 _SHOWN = 24  # largest number of rows of a sweep that are shown
-_ROUNDING = 1e-12  # relative difference of two answers below which they count as equal
+_ROUNDING = 1e-12  # relative difference of two results below which they count as equal
 SCALES = {
     "mm": 1e-3,
     "deg": pi / 180,
@@ -77,7 +77,7 @@ def list_outputs(
 
 
 def _doubted(output: Output, result: Any, doubtful: Sequence[Any]) -> str | Text:
-    """Format an output; dim the digits in which doubtful results differ; nan counts as equal."""
+    """Format an output; dim the digits in which it differs in `doubtful` results; nan counts as equal."""
     value = float(output.shown(result))
     changes = [abs(float(output.shown(other)) - value) for other in doubtful]
     change = float(np.fmax.reduce([0.0, *changes]))

@@ -1,4 +1,4 @@
-"""Answers on vehicles: parking and stops in both directions, which axle locks first, the lever's force."""
+"""Results of vehicles: parking and stops in both directions, which axle locks first, the lever's force."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class VehicleAnswer(Answer):
-    """Answer on a vehicle at rest on a slope and in a stop, with either axle downhill.
+    """Results of a vehicle at rest on a slope and in a stop, with either axle downhill.
 
     Attributes
     ----------

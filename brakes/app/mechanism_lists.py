@@ -56,13 +56,13 @@ def _entries(tables: dict[str, Any]) -> Entries:
 
 
 def _list_at(tables: Mapping[str, Any], key: str) -> list[Any]:
-    """Return the list at a key of tables; an empty list if the key is missing or has another value."""
+    """Return the list at a key of tables; an empty list if the key is missing or its value is no list."""
     given = tables.get(key)
     return given if isinstance(given, list) else []
 
 
 def _table_at(tables: Mapping[str, Any], key: str) -> dict[str, Any]:
-    """Return the table at a key of tables; an empty table if the key is missing or has another value."""
+    """Return the table at a key of tables; an empty table if the key is missing or its value is no table."""
     given = tables.get(key)
     return given if isinstance(given, dict) else {}
 
