@@ -248,7 +248,7 @@ class ForkliftAnswer(Answer):
         return ((replace(first, title=outcome(self.stop)), *others), *below)
 
     def _drawn(self, place: float | None) -> Rows:
-        """Make all drawings; for kinematics alone, the brake at rest (`place` 0) to the end of stage 2 (2)."""
+        """Make all drawings; for kinematics alone, the brake at `place`, from 0 (rest) to 2 (end)."""
         if place is not None and self.stages == ("kinematics",) and (motion := self.motion) is not None:
             turns = (
                 min(place, 1.0) * float(motion.seating_turn),

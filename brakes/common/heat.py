@@ -105,7 +105,7 @@ class Duty:
         0.0
     )
     cooling: Annotated[
-        Numbers, Described("W/K", "h", "heat lost then, over the difference to the surroundings", least=0)
+        Numbers, Described("W/K", "h", "heat flow to the surroundings between stops, per kelvin", least=0)
     ] = 0.0
     surroundings: Annotated[
         Numbers, Described("K", "T_a", "temperature of the surroundings, and before the first stop", above=0)
