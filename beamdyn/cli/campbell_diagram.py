@@ -56,8 +56,8 @@ def campbell(
     """Campbell diagram: natural frequencies over rotor speed, per-rev lines, crossings and margins.
 
     Each file is a scene (.toml) or a blade that `beamdyn import` reads; several are drawn over one another.
-    The speeds of the answer have the unit of --top-speed: rpm or rad/s. The CSV file has the frequencies over
-    speed.
+    The speeds in the results have the unit of --top-speed: rpm or rad/s. The CSV file has the frequencies
+    over speed.
 
     Parameters
     ----------

@@ -262,7 +262,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         )
 
     def values(self) -> dict[str, Any]:
-        """Convert the answer to plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         more = {"friction": self.friction, "wear": self.wear, "stop": self.stop}
         return self.run.to_dict() | {key: value and value.to_dict() for key, value in more.items()}
 

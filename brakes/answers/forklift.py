@@ -144,7 +144,7 @@ class ForkliftAnswer(Answer):
         return (*stop, *fade, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return a sentence on each design without an answer, by index; `count` is the number of designs."""
+        """Return a sentence on each design without a result, by index; `count` is the number of designs."""
         fade = None if self.pedal is None else self.pedal.fade
         hot = {} if fade is None else fade.messages_of_cases(count)
         stop = {} if self.stop is None else self.stop.messages_of_cases(count)
@@ -261,7 +261,7 @@ class ForkliftAnswer(Answer):
         return answer_drawings(self.stop, shown, self.forces, self.kinematics)
 
     def values(self) -> dict[str, Any]:
-        """Convert the answer to plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         parts = {name: plain(getattr(self, name)) for name in ("stop", "motion", "forces", "torque_from")}
         parts |= {} if self.pedal is None else {"pedal": plain(self.pedal)}
         return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}

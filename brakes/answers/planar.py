@@ -253,7 +253,7 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """Yield the answer in one line, its status first; see `Result.headline`."""
+        """Yield status, error and refusals for a one-line summary; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 

@@ -1,4 +1,4 @@
-"""Tables and rows of named numbers, from outputs of an answer or of a sweep."""
+"""Tables and rows of named numbers, from the results of a design or of a sweep."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def resultant(vector: np.ndarray) -> np.ndarray:
 
 
 def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Output, ...]:
-    """Turn outputs of one result into outputs of the answer; `part(answer)` returns the result."""
+    """Turn outputs of a result into outputs of an object with this result, which `part(object)` returns."""
     return tuple(
         Output(o.name, o.words, lambda answer, o=o: o.of(part(answer)), o.unit, o.scale) for o in outputs
     )
@@ -55,7 +55,7 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
 def take_from_each(
     parts: Callable[[Any], Sequence[Any]], count: int, kind: str, outputs: Iterable[Output]
 ) -> tuple[Output, ...]:
-    """Turn outputs of a part into outputs of an answer's numbered parts, such as its shoes."""
+    """Turn outputs of one part, such as a shoe, into outputs of the numbered parts of a result."""
     return tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, {kind} {i + 1}", o.of, o.unit, o.scale)
         for i in range(count)

@@ -198,7 +198,7 @@ class VehicleAnswer(Answer):
         return [[standing(way.holding) for way in self.ways.values()]]
 
     def values(self) -> dict[str, Any]:
-        """Convert the answer to plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         return {"ways": plain(self.ways), "lever": plain(self.lever)}
 
 
@@ -216,7 +216,7 @@ def _failures(way: OneDirection) -> list[str]:
 class ParkingType(ArrayBrakeType[VehicleInput]):
     """Type of brake for vehicles parked on a slope.
 
-    Its answers also state the hardest braking in a stop, which axle locks first, and the lever's force.
+    Its results also state the hardest braking in a stop, which axle locks first, and the lever's force.
     """
 
     name = "vehicle"

@@ -215,7 +215,7 @@ def _output_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Numbers:
 
 
 def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[tuple[Numbers, str], ...]:
-    """Find the cases without an answer (pressure or travel at the limit), and the reasons."""
+    """Find the cases without a solution (pressure or travel at the limit), and the reasons."""
     over = output > line.limit * (1 + EDGE)
     far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + EDGE))
     return (

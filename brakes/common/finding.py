@@ -174,7 +174,7 @@ def find_whole(
 
 @dataclass(frozen=True)
 class _Answers:
-    """The given function, with its refusals converted to nan and a reason."""
+    """The function `answer`, with its refusals of inputs converted to nan and a reason."""
 
     answer: Answer
     reason: Callable[[float], str] | None
@@ -213,7 +213,7 @@ class _Run:
 
 
 def _settle(answers: _Answers, x: np.ndarray) -> tuple[Curve, bool]:
-    """Double the samples until the rising, level and falling pieces stay the same.
+    """Double the samples of the answer until its rising, level and falling pieces stay the same.
 
     Return the curve, and whether the pieces stayed the same at the last doubling.
     """

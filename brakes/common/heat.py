@@ -220,14 +220,14 @@ class Fade(Result):
 
     @property
     def refusals(self) -> tuple[str, ...]:
-        """Reasons why a stop has no answer: it does not end, or is hotter than the friction curve."""
+        """Reasons why a stop has no result: it does not end, or is hotter than the friction curve."""
         if np.ndim(self.status) == 0:
             return tuple(self.messages_of_cases(1).values())
         found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
         return tuple(f"{words}, in {np.sum(self.status == status)} cases" for status, words in found)
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Return by case index which stop has no answer, and why; `count` is the number of cases."""
+        """Return by case index which stop has no result, and why; `count` is the number of cases."""
         status, stops = (np.broadcast_to(x, (count,)) for x in (self.status, self.duty.stops))
         ended = np.isfinite(self.end).reshape(len(self.end), -1)
         first = np.broadcast_to(1 + ended.argmin(axis=0), (count,))

@@ -122,7 +122,7 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
     Returns
     -------
     ForkliftAnswer or None
-        The answer; None if the stages do not depend on the stop.
+        The results; None if the stages do not depend on the stop.
 
     Raises
     ------
