@@ -122,7 +122,7 @@ def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Estimate the error of the tip deflection as the distance between two runs, split among coordinates.
+    """Estimate the error of the tip deflection, the distance of two runs, and each coordinate's part of it.
 
     The run `fine` has the same steps as `coarse`, with more stages.
     """

@@ -42,7 +42,7 @@ _Found = TypeVar("_Found")
 
 
 class Solution(NamedTuple):
-    """Solution of a transient: equations, path, time-integration error and size of tip deflection [m]."""
+    """Solution of a transient: equations, path, time-integration error and largest tip deflection [m]."""
 
     system: AnySystem
     path: Path

@@ -117,7 +117,7 @@ def groups(entries: Mapping[str, str]) -> list[ListGroup]:
     parts = [_item(key, i, part, tables) for key, i, part in _parts(tables)]
     of_joints, of_loads = ([part for part in parts if part.path in keys] for keys in (joints, loads))
     free = "Forces and springs. One without magnitude is found by equilibrium."
-    drawn = "Places in the drawing, where joints and loads act. Drag them there."
+    drawn = "Points where joints and loads act. Drag them in the drawing."
     each = (
         ("Bodies", "What moves. The ground is there by itself.", bodies, {"body": "body"}),
         ("Points", drawn, points, {"point": "point"}),

@@ -150,7 +150,7 @@ def run_command(
     further: Files | None = None,
     **options: object,
 ) -> None:
-    """Solve the design of a file, write the files that are asked for, and print the answer.
+    """Solve the design of a file, write the files that are asked for, and print the results.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def run_command(
 
 
 def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callable[[], str]]]:
-    """Return title and HTML of each additional drawing of an answer, for a report."""
+    """Return title and HTML of each additional drawing of the results, for a report."""
     from beamdyn.common.screens.screens import FoldedPart
 
     folded = (FoldedPart.of_drawings(*each) for each in brake.more.items())

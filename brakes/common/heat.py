@@ -95,10 +95,10 @@ class Duty:
     heated_mass: Annotated[Numbers, Described("kg", "m", "mass that one brake warms", above=0)]
     specific_heat: Annotated[Numbers, Described("J/kg/K", "c", "specific heat of that mass", above=0)] = 500.0
     load_torque: Annotated[
-        Numbers, Described("N m", "L", "torque that drives on, of a slope or a hanging load", least=0)
+        Numbers, Described("N m", "L", "driving torque, of a slope or a hanging load", least=0)
     ] = 0.0
     free_angle: Annotated[
-        Numbers, Described("rad", "", "angle that it turns in each stop before the torque is there", least=0)
+        Numbers, Described("rad", "", "rotation in each stop before the torque acts", least=0)
     ] = 0.0
     stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000, whole=True)] = 1.0
     interval: Annotated[Numbers, Described("s", "t", "time from the end of a stop to the next", least=0)] = (
@@ -108,7 +108,7 @@ class Duty:
         Numbers, Described("W/K", "h", "heat flow to the surroundings between stops, per kelvin", least=0)
     ] = 0.0
     surroundings: Annotated[
-        Numbers, Described("K", "T_a", "temperature of the surroundings, and before the first stop", above=0)
+        Numbers, Described("K", "T_a", "temperature of surroundings, and of brake before first stop", above=0)
     ] = 293.15
     friction_curve: Annotated[
         list[list[float]] | None,

@@ -115,7 +115,7 @@ class Machine(ABC):
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius [m] whose product with the largest pressure is the largest of pressure times radius."""
+        """Radius [m] that, times the largest pressure, gives the largest product of pressure and radius."""
         return self.reference_radius
 
     @abstractmethod

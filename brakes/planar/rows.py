@@ -139,7 +139,7 @@ class _AtPoint(ABC):
 
     @property
     def ends(self) -> tuple[End, End]:
-        """The point, and a point of the line or the centre of the circle."""
+        """The body's point, and a point of the other body's line or the centre of its circle."""
         return (self.body, self.at), (self.other, self.on)
 
     @abstractmethod
