@@ -56,8 +56,8 @@ def campbell(
     """Campbell diagram: natural frequencies over rotor speed, per-rev lines, crossings and margins.
 
     Each file is a scene (.toml) or a blade that `beamdyn import` reads; several are drawn over one another.
-    The speeds of the answer have the unit of --top-speed: rpm or rad/s. The CSV file has the frequencies over
-    speed.
+    The speeds in the results have the unit of --top-speed: rpm or rad/s. The CSV file has the frequencies
+    over speed.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def campbell(
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
-    alone = inputs[0].scene if len(inputs) == 1 else None  # several scenes have no common rolling radius
+    alone = inputs[0].scene if len(inputs) == 1 else None  # of several scenes, speeds in km/h are undefined
     bent = any(given.scene.physics.large_deflection for given in inputs)
     speeds, unit = parse_top(top_speed, alone, bent)
     question = _question(
@@ -119,14 +119,14 @@ class _BladeFile(NamedTuple):
 
 
 def _read_all(paths: Sequence[Path], length: str | None, hub_radius: str | None) -> list[_BladeFile]:
-    """Read the files; the two options apply only to blade files of other programs."""
+    """Read the files; `length` and `hub_radius` apply only to a blade file of another program."""
     given = {"length": length, "hub_radius": hub_radius}
     decks = [path for path in paths if path.suffix.lower() != ".toml"]
     for name, text in given.items():
         if text is not None and len(decks) != 1:
             why = "scenes (.toml) have their own; leave it out"
             if decks:
-                why = "it is that of one blade; beamdyn import writes each as a scene with its own"
+                why = "it applies to one blade file; beamdyn import writes each as a scene with its own value"
             raise ValueError(f'--{name.replace("_", "-")} = "{text}": {why}')
     return [_read(path, **given) for path in paths]
 
@@ -148,7 +148,7 @@ def _question(inputs: Sequence[_BladeFile], **options: object) -> Question:
 
 
 def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -> dict[str, Scene]:
-    """Return the scenes by label, with the physical effects of the option if it is given."""
+    """Return the scenes by label, with the effects of `physics`, if not None, in place of their own."""
     stems = [given.path.stem for given in inputs]
     names = stems if labels is None else [part.strip() for part in labels.split(",")]
     if len(names) != len(inputs) or not all(names):

@@ -3,11 +3,11 @@
 The motion q of a run, inserted in the equations of a larger model, leaves a known residual R(t).  The
 difference e of both motions obeys e'' + C e' + K(t) e = R.  The run is divided into stretches, and e is
 computed in the larger model's modes in each stretch: the slow ones as oscillators whose frequency follows the
-stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w (Liouville
-and Green); those too fast for the samples of the run follow the residual quasi-statically, and vibrate freely
-after its jumps.  So no time step has to be solved again.  Where the stiffness of a stretch differs from its
-mean, the modes are coupled: the motion of all others exerts a force on each, which is taken from the previous
-pass.
+stiffness, y = Im(exp(i theta) (a + int exp(-i theta) R / sqrt(w) dt)) / sqrt(w) with theta' = w and the
+initial amplitude a (Liouville and Green); those too fast for the samples of the run follow the residual
+quasi-statically, and vibrate freely after its jumps.  So no time step has to be solved again.  Where the
+stiffness of a stretch differs from its mean, the modes are coupled: the motion of all others exerts a force
+on each, which is taken from the previous iteration (pass).
 
 In shapes of arrays, n counts coordinates of the larger model, m those in the run, N times, and k functions of
 time that multiply stiffness matrices.
@@ -44,16 +44,16 @@ _RESOLVED = 1.9  # phase advance between samples [rad] up to which a mode is int
 # Distance, as a fraction of a segment, between its ends and the outermost samples: loads may jump at the
 # ends.
 _INSIDE = 1e-9
-# Relative distance of a mode shape from the larger model's functions up to which the model contains it.
+# Relative distance of a run's mode shape from the larger model's functions up to which these represent it.
 _CONTAINED = 1e-6
 _MOST_DECAY = 30.0  # largest exponent of the decay in a stretch: larger ones overflow
 # Assumed ratio of the largest sum of many random contributions to the root of the sum of their squares.
 _BY_CHANCE = 3.0
-# Largest ratio of the fast modes' amplitude to the difference from the larger model, for which amplitudes may
-# be added as random numbers.
+# Largest ratio of the fast modes' amplitude to the whole difference of the tip deflections up to which the
+# root of the sum of squares is accurate enough for adding their contributions.
 _MOST_RINGING = 0.1
-# Largest deflection in the last quarter of the run at steady speed, over that in its first half, above which
-# the oscillator equations are not valid.
+# Ratio of the largest deflections in the last quarter and in the first half of the motion at steady speed,
+# above which the oscillator equations are not valid.
 _MOST_GROWTH = 2.0
 
 
@@ -86,7 +86,7 @@ class _Residual:
 
     @classmethod
     def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
-        """Build the residual of a system's motion; None if `larger` lacks modes of it or is gyroscopic."""
+        """Build the residual of a system's motion; None if `larger` is gyroscopic or lacks modes of it."""
         few, many = (_shapes(each.equations) for each in (system, larger))
         stiffness, damping, _ = larger.equations.matrices
         if few.shape[0] != many.shape[0] or not set(damping) <= {"unity"}:
@@ -191,8 +191,8 @@ def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
 
     Contributions of modes too fast for the run's samples are added as random numbers.
 
-    A change of slope excites a mode of angular frequency w with the amplitude change / w^3.  A jump of the
-    load, spread over the time h between two samples, has w h times the effect.
+    A change of slope excites a mode of angular frequency w with the amplitude change / w^3.  A sudden jump of
+    the load between two samples, a time h apart, seems a slope jump / h, but excites w h times as much.
     """
     middle = steps.piece_start + steps.piece_width / 2
     root = residual.larger.root(middle)
@@ -313,7 +313,7 @@ class _Oscillators:
     def respond(
         self, force: np.ndarray, y0: np.ndarray, v0: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute the motion from y0, v0 under forces, both (times, modes), and the velocities at the end.
+        """Compute the motion (times, modes) from y0, v0 under forces (times, modes), and its end velocities.
 
         Fast modes are computed quasi-statically: the third result, a number for each mode, is the size of its
         jump from y0 at the start.

@@ -53,7 +53,7 @@ class BeamInSpaceSystem:
 
     @property
     def equations(self) -> Equations:
-        """Equations of motion in the same coordinates, linearized about the straight beam."""
+        """Equations of motion in the same modal coordinates, linearized about the straight beam."""
         return self.elastica.linear
 
     @property
@@ -63,7 +63,7 @@ class BeamInSpaceSystem:
 
     @cached_property
     def straight(self) -> ModalSystem:
-        """Equations of motion in the same coordinates, linearized about the straight beam."""
+        """The linearized `equations` with the motion of the root, to be evaluated at arrays of times."""
         return ModalSystem(self.equations, self.motion)
 
     def root(self, t: np.ndarray) -> RootMotion:
@@ -96,7 +96,7 @@ class BeamInSpaceSystem:
         K, C, M = self.tangents(*motion, self.residual(*motion))[:, 0]
         return np.block([[np.zeros_like(M), np.eye(self.size)], [-np.linalg.solve(M, np.hstack([K, C]))]])
 
-    # Outputs of the system ----------------------------------------------------------------------------
+    # Deflections and energy ---------------------------------------------------------------------------
 
     @cached_property
     def _unloaded(self) -> np.ndarray:
@@ -131,7 +131,7 @@ class BeamInSpaceSystem:
     def residual(self, carrier: Carrier, q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
         """Compute the residual of the equations of motion at s times: shape (..., s, coordinates).
 
-        Rates v and accelerations a have this shape, coordinates q may lack the first axes.
+        Rates v and accelerations a have the residual's shape; q may lack its leading axes.
         """
         return self._moving(carrier, q, v).residual(a)
 

@@ -19,7 +19,7 @@ class Polynomials:
     values : ndarray, shape (p, ...)
         Chebyshev coefficients.
     size : ndarray, shape (p,)
-        Sizes of the coefficients.
+        Largest magnitudes of the coefficients, scaled as `allowed` is.
     allowed : float
         Largest total size of the terms that may be left out.
     """

@@ -30,9 +30,9 @@ DONE = "done"
 class SweepRequest(FieldsOnly):
     """Checked arguments of `sweep`, from which every case (one final speed) is computed.
 
-    All cases share the modal basis: modes at rest, or at the slowest and the fastest speed of all cases.
-    Where `modes_at` gives the numbers of modes that some speeds [rad/s] need, ascending, each case uses the
-    larger number of the two neighbouring speeds.
+    All cases share `basis` if it consists of modes at rest; else each case uses modes at the slowest and the
+    fastest speed of its own motion.  Where `modes_at` gives the numbers of modes that some speeds [rad/s]
+    need, ascending, each case uses the larger number of the two neighbouring speeds.
     """
 
     scene: Scene
@@ -50,7 +50,7 @@ class SweepRequest(FieldsOnly):
         return TransientRequest(scene, self.t_end, self.tolerance, *how, basis)
 
     def basis_at(self, speed: float) -> ModalBasis:
-        """Choose the modal basis of one case: as many modes as needed at its slowest and fastest speed."""
+        """Choose the modal basis of one case: modes at rest, or at its slowest and its fastest speed."""
         basis = self.basis
         if self.modes_at:
             speeds, modes = zip(*self.modes_at, strict=True)

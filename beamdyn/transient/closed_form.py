@@ -3,8 +3,8 @@
 The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g
 are sums of a few harmonics.  So the motion consists of a forced part, at sums of the loads' frequencies and
 those of e, and of free vibrations exp(lambda t) times such sums (Floquet; Hill's method).  Both follow by
-iteration, because e is small.  The residual of the equations is measured, and decides whether the result
-is used.
+iteration, because e is small.  The result is used only if it satisfies the equations to the required
+accuracy.
 
 In shapes of arrays, n counts coordinates, N times or steps, s nodes in a step, and k exponents or
 frequencies.
@@ -26,7 +26,7 @@ _ORDERS = (3, 5)  # highest powers of the stiffness variation e that are tried i
 _FIT_TIMES = 8  # number of times, for each harmonic, at which stiffness and load factors are fitted
 # Reciprocal of the golden ratio: spacing the sample times by it avoids coincidence with a period.
 _GOLDEN = 0.6180339887498949
-_FIT_ERROR = 1e-3  # largest relative error of fitted stiffness and load factors, over the accuracy
+_FIT_ERROR = 1e-3  # largest relative error of fitted stiffness and load factors, over the required accuracy
 _SAME = 1e-9  # relative difference of frequencies that count as equal
 _ABSENT = 1e-12  # factor of a harmonic, over the largest, below which it is a rounding error of the fit
 _MOST_HARMONICS = 400
@@ -36,7 +36,7 @@ _CHECKED = 64  # number of times at which the equations are checked
 _NEGLIGIBLE = 1e-2  # fraction of the accuracy allowed for the sum of all neglected terms
 _RESOLVED = 12.0  # phase per step [rad] up to which the nodes of a step resolve an exponential
 _MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
-# Number of steps whose exponentials are computed; its square is the number of steps evaluated as one batch.
+# Number of exponentials of single steps, and of strides of as many steps; their products give one batch.
 _ROWS = 32
 
 
@@ -246,8 +246,8 @@ def propagate_in_closed_form(
     Returns
     -------
     SegmentWithError or None
-        None if the speed changes, if there are few steps, if e or g contain unknown frequencies, or if the
-        residual is too large.
+        None if the speed changes, if there are fewer than 200 steps, if e or g contain frequencies other than
+        the known ones of the system, or if the residual is too large.
     """
     if not system.steady or steps < _WORTH_IT:
         return None

@@ -58,12 +58,12 @@ _FEW = 4  # number of iterations up to which the next step starts with the same 
 _FINER = STAGES + 2  # number of stages of the second run
 _BALANCE = 1e-13  # largest residual, over the largest force or coordinate, that counts as rounding error
 _TIMES_COMPARED = 257  # number of times at which the equilibrium of forces is checked
-_SHORTER = 0.5  # factor of the step's phase angle after a step that was not solved
-# Phase angle per step [rad] below which one more mode is resolved, rather than all steps shortened.
+_SHORTER = 0.5  # factor by which all steps are shortened after a step that was not solved
+# Phase angle per step of the fastest resolved mode [rad] below which, instead, one more mode is resolved.
 _SHORT = 1.0
 # Number of smooth pieces of a motion, such as a sampled one, above which no piece is divided further.
 _MANY = 64
-_CHECKED = 48  # number of steps of a segment at which the interpolation error is measured
+_CHECKED = 48  # number of steps of a segment at which the interpolation error is estimated
 
 
 def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
@@ -122,7 +122,7 @@ def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Estimate the error of the tip deflection as the distance between two runs, split among coordinates.
+    """Estimate the error of the tip deflection, the distance of two runs, and each coordinate's part of it.
 
     The run `fine` has the same steps as `coarse`, with more stages.
     """

@@ -184,7 +184,7 @@ def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
 
 
 def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
-    """Add the motion without acceleration to maps; coordinates and velocities begin at column `first`."""
+    """Add q + h v and v, the motion without acceleration, to maps whose columns of q begin at `first`."""
     n = step.shape[1] // 2
     step[:, np.arange(2 * n), first + np.arange(2 * n)] += 1
     step[:, np.arange(n), first + n + np.arange(n)] += h
@@ -204,7 +204,7 @@ def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> 
 
 
 def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Build the collocation equations' right-hand sides for the augmented state of each step."""
+    """Build the matrices (N, s n, 2 n + 1) from (1, q, v) to the collocation equations' right-hand sides."""
     N, s, n = f.shape
     right = np.empty((N, s, n, 2 * n + 1))
     right[..., 0] = f
@@ -352,7 +352,7 @@ def propagate(
 
 
 def growth_without_bound(how_far: str) -> ArithmeticError:
-    """Build the error for a motion that grows without bound, so that it has no result."""
+    """Build the error for a motion that grows without bound; `how_far` states how far it has grown."""
     return ArithmeticError(
         f"the motion grows without bound, {how_far}: the beam buckles under its weight, or it is "
         "parametrically unstable, and linear theory does not hold; lower gravity or the speed, or end the "

@@ -38,7 +38,7 @@ _BALANCE = 1e-13  # residual force, over the largest force, below which it is a 
 # Fraction of the tolerance allowed for truncating the series in steps with weakly varying stiffness.
 _SERIES_SHARE = 0.1
 _ORDER_ACROSS_SAMPLES = 3  # order of the error of steps across samples, where the acceleration has kinks
-_FEW_STEPS = 4  # ratio of step to sample spacing above which steps are first shortened to one sample
+_FEW_STEPS = 4  # sample intervals in a step above which steps of one interval are tried before shorter ones
 _CEILED = 1.02  # factor that lengthens steps: rounding up their number (some hundreds) shortens them
 
 

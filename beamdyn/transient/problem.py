@@ -35,14 +35,14 @@ if TYPE_CHECKING:
     from scipy.integrate import OdeSolver
 
 _LIMIT_DEFLECTION = 1000.0  # ratio of deflection to length above which the motion counts as unbounded
-_FREE = 1e-9  # stiffness relative to that with a clamped root, below which the root turns freely
+_FREE = 1e-9  # least modal stiffness, relative to that with a clamped root, below which the root turns freely
 _REMEDY = "give 'rest' or an array"
 _FINER_MODEL = 1e-3  # ratio of the modes' discretization error to the tolerance
 _Found = TypeVar("_Found")
 
 
 class Solution(NamedTuple):
-    """Solution of a transient: equations, path, time-integration error and size of tip deflection [m]."""
+    """Solution of a transient: equations, path, time-integration error and largest tip deflection [m]."""
 
     system: AnySystem
     path: Path

@@ -30,7 +30,7 @@ from beamdyn.transient.weakly_modulated import propagate_modulated
 
 # Number of stretches of a run; each stretch has one step size, which suits the motion in it.
 _STRETCHES = 16
-# Smallest number of sample intervals for steps across samples: fewer are integrated one after the other.
+# Smallest number of sample intervals of a run for steps across samples; fewer are integrated one by one.
 _FEWEST_PIECES = 16
 # Mean number of steps per sample interval above which sample intervals are integrated one after the other.
 _MOST_STEPS_IN_PIECE = 16
@@ -39,8 +39,8 @@ _SLACK = 1e-6  # fraction of a step by which rounding may lengthen it
 # Largest and smallest number of equal steps whose maps are expanded about one mean motion of the root.
 _EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128
 _SAME_LENGTH = 1e-6  # fraction of a step by which lengths and ends of equal steps may differ
-# Pieces (sample intervals) in a step, and nodes or stages used in each: with many pieces, fewer nodes are as
-# exact.
+# Number of pieces (sample intervals) in a step from which on fewer nodes or stages in each piece suffice, and
+# number of these.
 _MANY_PIECES, _IN_EACH = 4, 5
 
 
@@ -140,7 +140,7 @@ class RecordSteps:
         return RecordSteps(self.piece_start, self.piece_width, self.piece_start, self.piece_width, index)
 
     def root(self, system: ModalSystem, table: gauss.Tableau) -> RootMotion:
-        """Compute the root's motion at the nodes of all steps, by the nearest polynomial of each quantity."""
+        """Compute the root's motion at the nodes of all steps, by least-squares polynomials."""
         within = gauss.tableau(self.nodes_in_piece(len(table.c)))
         root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
@@ -181,7 +181,7 @@ def _are_same(lengths: np.ndarray) -> np.ndarray:
 
 
 def _group(place: list[float]) -> list[int]:
-    """Group pieces with given ends into steps of at most unit length; return indices of the first pieces."""
+    """Group pieces with ends `place`, in steps, into steps of length 1 or less; return first indices."""
     first = [0]
     while True:
         end = bisect_right(place, place[first[-1]] + 1 + _SLACK) - 1
@@ -191,7 +191,7 @@ def _group(place: list[float]) -> list[int]:
 
 
 def maps_of_record(system: ModalSystem, steps: RecordSteps, stages: int) -> gauss.StepMaps:
-    """Solve the collocation equations of all steps, scaled to unit length; return the maps in seconds."""
+    """Solve the collocation equations of all steps, scaled to unit length; return the unscaled maps."""
     table, n, h = gauss.tableau(stages), system.size, steps.h[:, None, None]
     C, K, f = system.assemble(steps.root(system, table))
     C = None if C is None else C * h[..., None]

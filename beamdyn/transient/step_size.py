@@ -177,7 +177,7 @@ def chain_segments(
     y0: np.ndarray,
     propagate: Callable[[float, float, int, np.ndarray, np.ndarray], Segment],
 ) -> tuple[Segment, ...]:
-    """Integrate consecutive segments with ends `edges` [s], each in its number of steps."""
+    """Integrate consecutive segments with ends `edges` [s] by `propagate`, each in its number of steps."""
     segments: list[Segment] = []
     for (a, b), count in zip(pairwise(edges), steps, strict=True):
         segments.append(propagate(a, b, count, *np.split(y0, 2)))

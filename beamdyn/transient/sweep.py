@@ -85,7 +85,7 @@ class Sweep(SceneResult, StatesModelError):
         Estimated time-integration error of the tip deflection [m], which applies to `peaks` and `largest`.
     peaks_by_direction : ndarray, shape (S, 1) or (S, 2)
         Largest |tip deflection| in the window [m] in the direction of bending at the root and, where two
-        planes are modelled, in that across; `peaks` and `largest` then are magnitudes of a vector.
+        planes are modelled, perpendicular to it; `peaks` and `largest` then are magnitudes of a vector.
     mode_error : float
         Estimated modal truncation error, relative to the largest deflection: the largest of five sampled
         speeds.  It is an error of `peaks` and `largest` too.
@@ -141,12 +141,12 @@ class Sweep(SceneResult, StatesModelError):
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speed of the largest peak [rad/s], for which the model error is computed: (1,), or (0,)."""
+        """Speed of the largest peak [rad/s], for which the model error is computed; empty if all failed."""
         return self.speeds[[np.nanargmax(self.peaks)]] if np.isfinite(self.peaks).any() else np.empty(0)
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Relative changes of the largest peak (1,) by each neglected effect, found by repeating that run."""
+        """Relative changes (1,) of the largest peak by each neglected effect, from repeating its run."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
         motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
@@ -349,7 +349,7 @@ def _check_request(
 
 
 def _check_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> None:
-    """Raise a ValueError if a case passes the critical speed, or if a motion ends too early."""
+    """Raise a ValueError if a case passes the critical speed, or if a motion ends before `t_end`."""
     model, t = request.model, np.linspace(0, request.t_end, SPEED_SAMPLES)
     critical = np.inf if request.scene.physics.large_deflection else model.solver.critical_speed
     fastest = np.array([np.abs(motion.at(t).speed).max() for motion in map(request.motion, speeds)])
@@ -382,7 +382,7 @@ def _beside(function: Callable[..., float], *given: Any) -> Iterator[Future[floa
 def _find_mode_error(
     request: SweepRequest, speeds: tuple[float, ...], samples: Sequence[Transient] | None, unwanted: Event
 ) -> float:
-    """Compute the modal truncation error of sampled cases until `unwanted` is set; run cases not given."""
+    """Compute the modal truncation error of `samples`, else of new runs, until `unwanted` is set."""
     while_wanted = partial(takewhile, lambda _: not unwanted.is_set())
     runs = samples or (request.transient_request(speed).run() for speed in while_wanted(list_samples(speeds)))
     return largest_mode_error(while_wanted(runs))

@@ -22,7 +22,7 @@ from beamdyn.transient.trajectory import magnitude
 
 STAGES = 8  # number of stages of the Gauss collocation that is checked
 ERROR_ORDER = 2 * STAGES  # order of convergence of the collocation error with respect to the step size
-_MOST_CHECKED = 32  # number of steps of a segment at which the local error is measured
+_MOST_CHECKED = 32  # number of steps of a segment at which the local error is estimated
 _ROUGHEST = 2  # further checked steps per coordinate: those with the largest interpolation error
 # Reciprocal of the golden ratio: spacing points by it avoids coincidence with a period.
 _GOLDEN = 0.6180339887498949

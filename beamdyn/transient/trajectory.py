@@ -18,10 +18,10 @@ from beamdyn.transient.record_steps import RecordSegment
 from beamdyn.transient.system import ModalSystem
 
 SAMPLES = 8  # number of samples per step, unless times are given
-# Number of highest sampled maxima that are refined; samples miss the height of a maximum by at most 1e-3.
+# Number of highest sampled maxima that are refined; samples miss a maximum by at most 1e-3 of its height.
 _CANDIDATES = 12
 _REFINED = 4  # number of maxima that are refined a second time
-# Number of refinements of a maximum, each 17 times finer; the error of the final parabola is below 1e-12.
+# Number of refinements of a maximum, each 17 times finer; the final parabola's relative error is below 1e-12.
 _REFINEMENTS = 2
 
 Size: TypeAlias = "Callable[[np.ndarray], np.ndarray]"
@@ -173,7 +173,10 @@ def largest_in_each(size_of: Size, path: Path, windows: Sequence[tuple[float, fl
 
 
 def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) -> np.ndarray:
-    """Find the maximum of the parabola through three equidistant values, or the middle one if higher."""
+    """Find the maximum of the parabola through three equidistant values, if the middle one is largest.
+
+    Otherwise, return the middle value.
+    """
     is_maximum = (middle >= left) & (middle >= right)
     bend = np.where(is_maximum, 2 * middle - left - right, 0.0)
     # The tilt is at most 1 in magnitude: the highest value is between the left and right values.

@@ -56,7 +56,7 @@ class Transient(StatesModelError):
     tip : ndarray, shape (n,)
         Tip deflection [m] in the direction of bending at the root.
     tip_across : ndarray, shape (n,)
-        Tip deflection [m] in the direction across; zeros where one plane is modelled.
+        Tip deflection [m] perpendicular to that direction and the axis; zeros where one plane is modelled.
     coordinates, velocities : ndarray, shape (n, modes)
         Modal coordinates [kg^1/2 m] and their rates.
     time_error : float
@@ -213,8 +213,8 @@ class Transient(StatesModelError):
     ) -> np.ndarray:
         """Compute the deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
 
-        Direction 0 is the bending direction at the root, 1 the direction across, in which a beam with one
-        plane is rigid.
+        Direction 0 is the bending direction at the root, 1 is perpendicular to it and to the axis; in this a
+        beam with one plane is rigid.
         """
         xi = np.asarray(x) / self.scene.beam.length
         return self.system.shape(self.at(t)[0], xi, direction)
@@ -288,7 +288,7 @@ class Transient(StatesModelError):
         """Find the largest |tip deflection| [m] from `start` to `end` [s], also between samples.
 
         If two planes are modelled, this is the magnitude of the deflection vector, or of its component in a
-        direction: 0 is the bending direction at the root, 1 the direction across.
+        direction: 0 is the bending direction at the root, 1 is perpendicular to it and to the axis.
         """
         self._check_window(start, end)
         return self.solution.peak(start, end, direction)

@@ -30,7 +30,7 @@ _LARGEST_SAMPLED = 1.5
 # Number of squarings of a matrix before taking its norm, which gives a close bound of the spectral radius.
 _SQUARINGS = 3
 _SAMPLES = 257  # number of samples of e, the variation of the stiffness, among which the largest is sought
-# Ratio of a mode's frequency to the largest below which velocity errors are not weighted further.
+# Least frequency by which velocity errors are divided, as a fraction of the largest frequency of all modes.
 _SLOWEST = 1e-3
 _SINGLE_ROUNDING = 1e-6  # relative rounding error of sums in single precision
 _STEPS = 192  # number of steps evaluated as one batch
@@ -327,7 +327,9 @@ def propagate_modulated(
     stages: int,
     accuracy: float,
 ) -> gauss.Segment | None:
-    """Integrate over equal steps by the expanded maps; other arguments as for `gauss.propagate`.
+    """Integrate over equal steps, whose maps from state to state are power series in the stiffness factors e.
+
+    Over time, the coefficients of the series are interpolated by Chebyshev polynomials.
 
     Parameters
     ----------

@@ -72,20 +72,20 @@ class Answer(Result, ABC):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Reasons to doubt the answer, one sentence each."""
+        """Reasons to doubt the results, one sentence each."""
         return ()
 
     @property
     def refusals(self) -> Sequence[str]:
-        """Reasons why the model has no answer, such as a brake that locks, one sentence each."""
+        """Reasons why the model has no result, such as a brake that locks, one sentence each."""
         return ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return the reasons why designs have no answer, by index; `count` designs were solved together."""
+        """Return the reasons why designs have no result, by index; `count` designs were solved together."""
         return {}
 
     def loadable(self) -> Result | None:
-        """Return the result that can be saved to a file, if the answer consists of one result; else None."""
+        """Return the `Result` that can be saved to a file, if all results are in one object; else None."""
         return None
 
     @abstractmethod
@@ -108,7 +108,7 @@ class Answer(Result, ABC):
 
     @abstractmethod
     def figure(self, place: float | None = None) -> Figure:
-        """Draw the figure of the answer.
+        """Draw the figure of the results.
 
         Parameters
         ----------
@@ -126,7 +126,7 @@ class Answer(Result, ABC):
         return ()
 
     def branches(self) -> Mapping[str, Answer]:
-        """Return, by name, a copy of the answer that draws each solution; empty if there is only one."""
+        """Return copies of this object, each of which draws one of several solutions, by name; else none."""
         return {}
 
     def handles(self, place: float) -> Sequence[Handle]:
@@ -282,7 +282,7 @@ class BrakeType(ABC, Generic[FileModel]):
 
     @abstractmethod
     def outputs(self, design: FileModel) -> Sequence[Output]:
-        """Describe the outputs of the answer to a design, which users can name and sweeps can show."""
+        """Describe the numbers that result from a design, which users can name and sweeps can show."""
 
     @abstractmethod
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
@@ -445,7 +445,7 @@ class TableBrakeType(BrakeType[FileModel]):
     """Base of types of brakes whose mechanics takes one design: a sweep solves the designs one by one."""
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
-        """Solve the requested designs one by one; results are nan where there is no answer."""
+        """Solve the requested designs one by one; results are nan where the model has none."""
         made = one_by_one(asked.tables, asked.axes, outputs, self.solve_task, asked.combine, asked.run)
         return made, made.warnings
 

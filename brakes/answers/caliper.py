@@ -1,4 +1,4 @@
-"""Answers on bicycle calipers, and the types of brakes for named calipers and for mechanisms."""
+"""Results of bicycle calipers, and the types of brakes for named calipers and for mechanisms."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.system import OppositeTravelError, join_names
 
-_STROKE = "Travels [mm], forces of the pads over that of the finger, velocity of the left pad over the right"
+_STROKE = "Travels [mm], forces of the pads over the finger's, velocity of the left pad over the right pad's"
 _AT_STOPS = 11  # number of positions of the screen's slider over the stroke
 _STROKE_HEADS = (
     *("cable", "finger", "right pad", "left pad"),
@@ -262,7 +262,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         )
 
     def values(self) -> dict[str, Any]:
-        """Convert the answer to plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         more = {"friction": self.friction, "wear": self.wear, "stop": self.stop}
         return self.run.to_dict() | {key: value and value.to_dict() for key, value in more.items()}
 
@@ -297,7 +297,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         return self._tensions(self.friction) if self.friction and cable == self.run.cable[-1] else ""
 
 
-# From file to answer ------------------------------------------------------------------------------------
+# From file to results -----------------------------------------------------------------------------------
 
 
 class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
@@ -306,7 +306,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     name = "mechanism"
     title = "Mechanism"
     method = "equilibrium of rigid bodies in a plane, solved by singular values; friction by Newton's method"
-    error_from = "rounding of the drawing and residual over the smallest singular value of the equations"
+    error_from = "rounding of the drawing and residual, both over the equations' smallest singular value"
     purpose = "Any planar mechanism of bodies, joints and loads: every force, as drawn and over a stroke."
     sections = ("", "points", "run", "caliper", "stop")
     needs = ("title", "bodies", *PARTS, *sections[1:])
@@ -383,7 +383,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
                 raise NoAnswer(say(error)) from None
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
-        """Return words and names of the results at the top of the screen, loads from equilibrium first."""
+        """Return words and names of three loads for the top of the screen, first those that are not given."""
         if not isinstance(answer, MechanismAnswer):
             return super()._first(answer, outputs)
         mechanism = answer.equilibrium.position.mechanism

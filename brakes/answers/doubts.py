@@ -27,7 +27,7 @@ def change(other: float, value: float, unit: str, none: str) -> str:
 
 
 def with_less_and_more(design: Any, path: str, solve: Callable[[Any], Answer]) -> list[Answer]:
-    """Solve a design with less and with more friction; leave out cases without an answer.
+    """Solve a design with less and with more friction; leave out cases without a result.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Answers on drum brakes with pivoted shoes, for command, screen and report."""
+"""Results of drum brakes with pivoted shoes, for command, screen and report."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _outputs(shoes: int) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class DrumAnswer(RubbingAnswer):
-    """Answer on a drum brake with pivoted shoes: its forces, and its heating in repeated stops."""
+    """Results of a drum brake with pivoted shoes: its forces, and its heating in repeated stops."""
 
     solver = staticmethod(brake_torque)
 

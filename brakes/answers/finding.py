@@ -28,7 +28,7 @@ from brakes.common.solutions import Solutions
 FIND, SO_THAT = "--find", "--so-that"
 _USUAL = {"m": "mm", "rad": "deg"}  # units in which values are shown if the file has none
 _TIMES = 10.0  # factor around an input's value within which it is sought, if no bounds are given
-_ROUNDED = 1e-3  # largest relative rounding error of a wanted value
+_ROUNDED = 1e-3  # largest relative error that a wanted value may have because it was typed with few digits
 # Number of samples at the start of a search, for designs solved together, and for designs solved one by one.
 _TOGETHER, _ONE_BY_ONE = 129, 17
 
@@ -60,7 +60,7 @@ def find_in_file(
     Raises
     ------
     ValueError
-        If input or result are not known, or their values are of another kind.
+        If input or result are not known, a value has a wrong unit, or the input is 0 and has no bounds.
     """
     start, design = perf_counter(), brake.read(tables, source)
     output, target, rounding, wanted = _wanted(brake.outputs(design), so_that)
@@ -161,7 +161,7 @@ def _whole_numbers(brake: BrakeType[Any], axis: Axis) -> np.ndarray:
 
 
 def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: str) -> Axis:
-    """Find the sought input, with the first samples of the search: as given, or around the file's value."""
+    """Find the sought input, with first samples as in the text or, without any, around the file's value."""
     inputs = brake.sweep_inputs(design, tables)
     entry = find_input(inputs, text.partition("=")[0].strip(), f'{FIND} = "{text}"')
     value, _ = nominal_of(design, entry, FIND)

@@ -1,4 +1,4 @@
-"""Answers on a forklift's brakes: the stop, the motion of the shoes, and the forces in one brake."""
+"""Results of a forklift's brakes: the stop, the motion of the shoes, and the forces in one brake."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> 
 
 @dataclass(frozen=True)
 class ForkliftAnswer(Answer):
-    """Answer on a forklift's brakes: results of some of the stages stop, kinematics and forces.
+    """Results of a forklift's brakes, for some of the stages stop, kinematics and forces.
 
     Attributes
     ----------
@@ -144,7 +144,7 @@ class ForkliftAnswer(Answer):
         return (*stop, *fade, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return a sentence on each design without an answer, by index; `count` is the number of designs."""
+        """Return a sentence on each design without a result, by index; `count` is the number of designs."""
         fade = None if self.pedal is None else self.pedal.fade
         hot = {} if fade is None else fade.messages_of_cases(count)
         stop = {} if self.stop is None else self.stop.messages_of_cases(count)
@@ -183,7 +183,7 @@ class ForkliftAnswer(Answer):
                 ]
                 for event, stage in zip(done.events, (done.right, done.left, done.drum), strict=True)
             ]
-            least = "rank and smallest singular value: of the mechanism's constraints, least on the way"
+            least = "rank and smallest singular value of the mechanism's constraints, least over the motion"
             heads_of_events = ("stage", "event", "rank", "smallest singular value")
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
             tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
@@ -248,7 +248,7 @@ class ForkliftAnswer(Answer):
         return ((replace(first, title=outcome(self.stop)), *others), *below)
 
     def _drawn(self, place: float | None) -> Rows:
-        """Make all drawings; for kinematics alone, the brake at a slider position from 0 to 2."""
+        """Make all drawings; for kinematics alone, the brake at `place`, from 0 (rest) to 2 (end)."""
         if place is not None and self.stages == ("kinematics",) and (motion := self.motion) is not None:
             turns = (
                 min(place, 1.0) * float(motion.seating_turn),
@@ -261,7 +261,7 @@ class ForkliftAnswer(Answer):
         return answer_drawings(self.stop, shown, self.forces, self.kinematics)
 
     def values(self) -> dict[str, Any]:
-        """Convert the answer to plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         parts = {name: plain(getattr(self, name)) for name in ("stop", "motion", "forces", "torque_from")}
         parts |= {} if self.pedal is None else {"pedal": plain(self.pedal)}
         return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}
@@ -275,7 +275,7 @@ class ForkliftAnswer(Answer):
         return ()
 
 
-# From file to answer ------------------------------------------------------------------------------------
+# From file to results -----------------------------------------------------------------------------------
 
 
 _NEEDS = {
@@ -319,7 +319,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # locked wheels limit the torque, not the linings' friction
+            if chained is not None:  # locked wheels may need less than the linings' friction
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(
@@ -342,10 +342,10 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     name = "forklift"
     title = "Forklift"
     purpose = "Stopping distance of a forklift, motion of its duo-servo shoes, and the force on every part."
-    method = "closed forms of the stop and of the shoes' motion; forces by a root of one equation a shoe"
+    method = "closed forms of the stop and of the shoes' motion; forces by roots of one or two equations"
     error_from = (
-        "rounding of inputs and sums, over the margins to self-locking and to never stopping, and to the end "
-        "of the shoes' reach"
+        "rounding of inputs and sums, divided by the margins to self-locking, to never stopping, and to the "
+        "end of the shoes' reach"
     )
     model = ForkliftInput
     together = (

@@ -84,7 +84,7 @@ def duo_servo_handles(motion: ShoeMotion, progress: float) -> list[Handle]:
 
 
 def _place_drawn(motion: ShoeMotion, progress: float, point: object) -> np.ndarray:
-    """Compute the drawn position of a point of the right shoe that is given at rest."""
+    """Compute the drawn position of a point of the right shoe from its position at rest."""
     return moved(np.array([point], dtype=float), motion.geometry, motion, progress, "right")[0]
 
 
@@ -125,7 +125,7 @@ def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> 
 
 
 def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Iterate x + residual(x) until the residual is negligible; stop early if no brake has these values."""
+    """Iterate x + residual(x) until the residual is negligible, or `residual` refuses x by a ValueError."""
     for _ in range(_ITERATIONS):
         try:
             step = residual(start)

@@ -1,4 +1,4 @@
-"""Answers on brakes whose linings are pressed by one force, and their common type of brake."""
+"""Results of brakes whose linings are pressed by one force, with tables and drawings, and `MachineType`."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _outputs(brake: Machine) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class MachineAnswer(RubbingAnswer):
-    """Answer on a brake whose linings are pressed by one force: its forces, and its heating."""
+    """Results of a brake whose linings are pressed by one force: its forces, and its heating."""
 
     solver = staticmethod(solve_brake)
 
@@ -123,7 +123,7 @@ TYPES: dict[type[Machine], MachineType] = {}  # types of brakes by the class of 
 
 
 class MachineType(RubbingType[MachineInput]):
-    """A type of brake whose linings are pressed by one force.
+    """Description of a type of brake whose linings are pressed by one force, for form, command and report.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Answers on planar mechanisms of bodies, joints and loads, as drawn and over a stroke."""
+"""Results of planar mechanisms of bodies, joints and loads, as drawn and over a stroke."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class MechanismAnswer(planar.PlanarAnswer):
     branch: str = WITHOUT
 
     def branches(self) -> Mapping[str, MechanismAnswer]:
-        """Return the answer with the forces of each branch drawn: without friction, squeezing, releasing."""
+        """Return copies that draw the forces of each branch: without friction, squeezing, releasing."""
         return (
             {name: replace(self, branch=name) for name in self.friction.drawn.ways} if self.friction else {}
         )
@@ -205,7 +205,7 @@ class MechanismAnswer(planar.PlanarAnswer):
             yield part.name, *force, *sizes, part.unit
 
     def values(self) -> dict[str, Any]:
-        """Convert the answer to plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         keys = ("mobility", "indeterminacy", "loose", "undetermined", "open_or_slack")
         forces = ("reactions", "magnitudes", "amplitudes")
         drawn = {key: plain(getattr(self.equilibrium, key)) for key in (*keys, *forces)}

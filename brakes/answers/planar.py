@@ -1,4 +1,4 @@
-"""Tables, outputs, friction, and handles that answers on calipers and on mechanisms share."""
+"""Tables, outputs, friction, and handles that results of calipers and of mechanisms share."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
         for load in mechanism.loads
     ]
     rows.append(())
-    # Forces smaller than this error [N] count as neither tension nor compression.
+    # Forces smaller than their largest error [N] count as neither tension nor compression.
     largest = np.nan_to_num(np.abs(np.concatenate([(0.0,), *map(np.ravel, magnitudes.values())])))
     least = max(1e-9, float(np.nan_to_num(equilibrium.largest_error)) * float(largest.max(initial=0.0)))
     for joint in mechanism.joints:
@@ -144,7 +144,7 @@ class MechanismFriction(Result):
     def locking(self, answered: bool) -> list[str]:
         """Return a sentence on each direction of motion whose forces statics does not determine.
 
-        If `answered`, these are the directions that have an answer nevertheless, else those that have none.
+        If `answered`, these are the directions whose forces are possible nevertheless, else all others.
         """
         return [
             Words(name, ": ", way.message)
@@ -189,7 +189,7 @@ class MechanismFriction(Result):
         return table(title, ("size of", *ways, "unit"), [*rows, (), *rubbing], (0, 4))
 
     def curves(self) -> list[tuple[Load, str, np.ndarray]]:
-        """Return the unknown loads over the stroke, squeezing and releasing: load, name, and sizes."""
+        """Return the unknown loads over the stroke, squeezing and releasing: load, name, and magnitudes."""
         return [
             (load, f"{load.name}, {name}", way.amplitudes[load.name])
             for load in self.last.without.position.mechanism.unknown_loads
@@ -228,7 +228,7 @@ class MechanismFriction(Result):
         }
 
 
-# Base of answers on calipers and on mechanisms: statics, handles, free bodies, animation -----------
+# Base of results of calipers and of mechanisms: statics, handles, free bodies, animation -----------
 
 
 _FRAMES = 30  # number of frames in an animation
@@ -236,7 +236,7 @@ _FRAMES = 30  # number of frames in an animation
 
 @dataclass(frozen=True)
 class PlanarAnswer(Answer):
-    """Base of answers on calipers and on mechanisms.
+    """Base of results of calipers and of mechanisms.
 
     Attributes
     ----------
@@ -253,7 +253,7 @@ class PlanarAnswer(Answer):
     motion: Stroke | None
 
     def headline(self) -> Iterator[str]:
-        """Yield the answer in one line, its status first; see `Result.headline`."""
+        """Yield status, error and refusals for a one-line summary; see `Result.headline`."""
         yield self.status
         yield from (part for part in super().headline() if part != self.status)
 
@@ -284,7 +284,7 @@ class PlanarAnswer(Answer):
         )
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Make handles on the points of the file: dimensions of a named caliper, or points of a mechanism."""
+        """Make handles to drag the points given in the file: those of a named caliper, or of a mechanism."""
         if isinstance(self.design, MechanismInput):
             points = [(name, f"points.{name}", at) for name, at in self.design.points.items()]
         else:

@@ -1,4 +1,4 @@
-"""Self-locking, friction and heating, for answers on drum brakes and on brakes pressed by one force."""
+"""Self-locking, friction and heating, for results of drum brakes and of brakes pressed by one force."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _SHOWN = 10  # largest number of stops in the table of repeated stops
 
 @dataclass(frozen=True)
 class RubbingAnswer(Answer):
-    """Base of answers on brakes that slide or lock: forces, and heating in repeated stops.
+    """Base of results of brakes that slide or lock: forces, and heating in repeated stops.
 
     Attributes
     ----------
@@ -83,7 +83,7 @@ class RubbingAnswer(Answer):
         return type(self).solver(brake or result.brake, **given | changed)
 
     def stop_again(self) -> Answer:
-        """Add the repeated stops of the file to the answer, if it has any and the brake does not lock."""
+        """Add the repeated stops of the file to the results, if it has any and the brake does not lock."""
         if self.design.heat is None or np.all(self.result.locked):
             return self
         duty, result = self.design.heat.core, self.result
@@ -150,7 +150,7 @@ class RubbingAnswer(Answer):
         """Describe the outputs of the brake and its linings that tables, sweeps and files show."""
 
     def loadable(self) -> Any:
-        """Return the forces' result, which can be saved to a file; None with repeated stops."""
+        """Return the result with the forces, which can be saved to a file; None if stops are repeated."""
         return self.result if self.fade is None else None
 
     def values(self) -> dict[str, Any]:
@@ -159,9 +159,9 @@ class RubbingAnswer(Answer):
 
 
 class RubbingType(ArrayBrakeType[FileModel]):
-    """Base of types of brakes that slide or lock: results that screen and sweeps show first."""
+    """Base of types of brakes that slide or lock: it states which results screen and sweeps show first."""
 
-    error_from = "rounding of inputs and sums, over the margin to self-locking"
+    error_from = "rounding of inputs and sums, divided by the margin to self-locking"
     key_results = (("torque", "torque"), ("brake factor C*", "c_star"), ("margin to self-locking", "margin"))
     together = f"[load]: {LoadInput.ONE}."
     sweep_results = "torque,c_star,peak_pressure"

@@ -1,4 +1,4 @@
-"""Tables and rows of named numbers, from outputs of an answer or of a sweep."""
+"""Tables and rows of named numbers, from the results of a design or of a sweep."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from beamdyn.common.results.columns import evenly_spread, meanings
 from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
 _SHOWN = 24  # largest number of rows of a sweep that are shown
-_ROUNDING = 1e-12  # relative difference of two answers below which they count as equal
+_ROUNDING = 1e-12  # relative difference of two results below which they count as equal
 SCALES = {
     "mm": 1e-3,
     "deg": pi / 180,
@@ -46,7 +46,7 @@ def resultant(vector: np.ndarray) -> np.ndarray:
 
 
 def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Output, ...]:
-    """Turn outputs of one result into outputs of the answer; `part(answer)` returns the result."""
+    """Turn outputs of a result into outputs of an object with this result, which `part(object)` returns."""
     return tuple(
         Output(o.name, o.words, lambda answer, o=o: o.of(part(answer)), o.unit, o.scale) for o in outputs
     )
@@ -55,7 +55,7 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
 def take_from_each(
     parts: Callable[[Any], Sequence[Any]], count: int, kind: str, outputs: Iterable[Output]
 ) -> tuple[Output, ...]:
-    """Turn outputs of a part into outputs of an answer's numbered parts, such as its shoes."""
+    """Turn outputs of one part, such as a shoe, into outputs of the numbered parts of a result."""
     return tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, {kind} {i + 1}", o.of, o.unit, o.scale)
         for i in range(count)
@@ -77,7 +77,7 @@ def list_outputs(
 
 
 def _doubted(output: Output, result: Any, doubtful: Sequence[Any]) -> str | Text:
-    """Format an output; dim the digits in which doubtful results differ; nan counts as equal."""
+    """Format an output; dim the digits in which it differs in `doubtful` results; nan counts as equal."""
     value = float(output.shown(result))
     changes = [abs(float(output.shown(other)) - value) for other in doubtful]
     change = float(np.fmax.reduce([0.0, *changes]))

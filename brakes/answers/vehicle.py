@@ -1,4 +1,4 @@
-"""Answers on vehicles: parking and stops in both directions, which axle locks first, the lever's force."""
+"""Results of vehicles: parking and stops in both directions, which axle locks first, the lever's force."""
 
 from __future__ import annotations
 
@@ -106,7 +106,7 @@ def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class VehicleAnswer(Answer):
-    """Answer on a vehicle at rest on a slope and in a stop, with either axle downhill.
+    """Results of a vehicle at rest on a slope and in a stop, with either axle downhill.
 
     Attributes
     ----------
@@ -198,7 +198,7 @@ class VehicleAnswer(Answer):
         return [[standing(way.holding) for way in self.ways.values()]]
 
     def values(self) -> dict[str, Any]:
-        """Convert the answer to plain numbers, lists and strings."""
+        """Convert the results to plain numbers, lists and strings."""
         return {"ways": plain(self.ways), "lever": plain(self.lever)}
 
 
@@ -216,7 +216,7 @@ def _failures(way: OneDirection) -> list[str]:
 class ParkingType(ArrayBrakeType[VehicleInput]):
     """Type of brake for vehicles parked on a slope.
 
-    Its answers also state the hardest braking in a stop, which axle locks first, and the lever's force.
+    Its results also state the hardest braking in a stop, which axle locks first, and the lever's force.
     """
 
     name = "vehicle"

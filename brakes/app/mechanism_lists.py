@@ -56,13 +56,13 @@ def _entries(tables: dict[str, Any]) -> Entries:
 
 
 def _list_at(tables: Mapping[str, Any], key: str) -> list[Any]:
-    """Return the list at a key of tables; an empty list if the key is missing or has another value."""
+    """Return the list at a key of tables; an empty list if the key is missing or its value is no list."""
     given = tables.get(key)
     return given if isinstance(given, list) else []
 
 
 def _table_at(tables: Mapping[str, Any], key: str) -> dict[str, Any]:
-    """Return the table at a key of tables; an empty table if the key is missing or has another value."""
+    """Return the table at a key of tables; an empty table if the key is missing or its value is no table."""
     given = tables.get(key)
     return given if isinstance(given, dict) else {}
 
@@ -117,7 +117,7 @@ def groups(entries: Mapping[str, str]) -> list[ListGroup]:
     parts = [_item(key, i, part, tables) for key, i, part in _parts(tables)]
     of_joints, of_loads = ([part for part in parts if part.path in keys] for keys in (joints, loads))
     free = "Forces and springs. One without magnitude is found by equilibrium."
-    drawn = "Places in the drawing, where joints and loads act. Drag them there."
+    drawn = "Points where joints and loads act. Drag them in the drawing."
     each = (
         ("Bodies", "What moves. The ground is there by itself.", bodies, {"body": "body"}),
         ("Points", drawn, points, {"point": "point"}),

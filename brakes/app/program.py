@@ -1,4 +1,4 @@
-"""The program ``brakes app``; its screens and documents (input files with screens) follow from the types."""
+"""The program ``brakes app``: screens and documents (input files with screens) of each type of brake."""
 
 from __future__ import annotations
 

@@ -273,7 +273,7 @@ def _mean(
 ) -> dict[str, Any]:
     """Compute the mean of two equilibria, with the weight `share` of the first; `a` if there is no `b`.
 
-    Errors and residuals are the larger of the two, and the status is judged anew.
+    The error and residual at each position are the larger ones of both equilibria; the status is found anew.
     """
     b = a if b is None else b
     weight = np.broadcast_to(share, a.residual.shape)

@@ -80,8 +80,8 @@ class EeBrake(Design):
     Parameters
     ----------
     pivot, pad, upper_pin : tuple of 2 floats
-        Pivot of the right lever on the panel, its pad, and its pin with the strut [m]; the left lever is the
-        mirror image, and its upper pin O carries the upper-left lever.
+        Pivot of the right lever on the panel, point where the rim's force acts on its pad, and its pin with
+        the strut [m]; the left lever is the mirror image, and its upper pin O carries the upper-left lever.
     link_pin, strut_pin, housing : tuple of 2 floats
         Points A (link), B (strut) and C (face on which the cable's housing stands) of the upper-left lever
         [m].
@@ -145,7 +145,8 @@ class SinglePivot(Design):
     Parameters
     ----------
     bolt, pad : tuple of 2 floats
-        The mount bolt, on which both arms turn, and the right pad [m].
+        The mount bolt, on which both arms turn, and the point where the rim's force acts on the right pad,
+        whose mirror image is that of the left pad [m].
     clamp, housing : tuple of 2 floats
         Cable clamp on the arm of the right pad, and housing stop on the arm of the left pad [m].
 
@@ -183,9 +184,11 @@ class DualPivot(Design):
     roller : tuple of 2 floats
         Point where the right pad's arm lifts the left pad's arm [m].
     pad : tuple of 2 floats
-        The right pad [m].
+        Point where the rim's force acts on the right pad; that of the left one is its mirror image [m].
     clamp, housing : tuple of 2 floats
         Cable clamp on the arm of the right pad, and housing stop on the arm of the left pad [m].
+    split : {"equal force", "equal work"}
+        How the rim loads the two pads, which statics leaves open: see `Caliper`.
 
     Examples
     --------
@@ -222,8 +225,8 @@ class CentrePull(Design):
     Parameters
     ----------
     pivot, pad, hook : tuple of 2 floats
-        Pivot and pad of the right arm, and the arm's end of the straddle cable, on the other side of the
-        middle [m].
+        Pivot of the right arm, point where the rim's force acts on its pad, and its end of the straddle
+        cable, on the other side of the middle [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
 
@@ -253,7 +256,8 @@ class Cantilever(Design):
     Parameters
     ----------
     pivot, pad, hook : tuple of 2 floats
-        Boss and pad of the right arm, and the arm's end of the straddle cable [m].
+        Boss of the right arm, point where the rim's force acts on its pad, and its end of the straddle cable
+        [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
 
@@ -283,8 +287,8 @@ class VBrake(Design):
     Parameters
     ----------
     pivot, pad, clamp : tuple of 2 floats
-        Boss and pad of the right arm, and the cable clamp at its top [m]; the left arm with
-        the cable's noodle is its mirror image.
+        Boss of the right arm, point where the rim's force acts on its pad, and the cable clamp at its top
+        [m]; the left arm with the cable's noodle is its mirror image.
 
     Examples
     --------

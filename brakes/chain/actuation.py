@@ -56,10 +56,10 @@ class Actuation(Result):
     pedal: Pedal
     line: Line
     pedal_force: Annotated[Numbers, Meaning("N", "force on pedal or lever")]
-    output_force: Annotated[Numbers, Meaning("N", "force behind it, with the booster")]
+    output_force: Annotated[Numbers, Meaning("N", "force behind pedal or lever and booster")]
     pressure: Annotated[Numbers, Meaning("Pa", "pressure of the line", "MPa")]
     actuator_force: Annotated[Numbers, Meaning("N", "force on each actuator")]
-    pedal_travel: Annotated[Numbers, Meaning("m", "travel of pedal or lever, by the travels given", "mm")]
+    pedal_travel: Annotated[Numbers, Meaning("m", "travel of pedal or lever, by line or cable", "mm")]
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one-line summary; see `Result.headline`."""
@@ -192,7 +192,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
     >>> line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175, lost_travel=0.02)
     >>> pedal = chain.Pedal(ratio=1.0, force=450.0, travel=0.15)
     >>> chain.ratio_for(pedal, line, 11650.0).message
-    'none: the travel runs out before: it rises with the ratio and with the force'
+    'none: the pedal reaches the end of its travel first; a higher ratio or force needs more travel'
     """
     output = _output_for(pedal, line, actuator_force)
     ratio = pedal.rod_force_for(output) / pedal.force
@@ -215,10 +215,10 @@ def _output_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Numbers:
 
 
 def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[tuple[Numbers, str], ...]:
-    """Find the cases without an answer (pressure or travel at the limit), and the reasons."""
+    """Find the cases without a solution (pressure or travel at the limit), and the reasons."""
     over = output > line.limit * (1 + EDGE)
     far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + EDGE))
     return (
         (over, "the line would exceed the pressure of its cylinders, which rises with the force"),
-        (far, "the travel runs out before: it rises with the ratio and with the force"),
+        (far, "the pedal reaches the end of its travel first; a higher ratio or force needs more travel"),
     )

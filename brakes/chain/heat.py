@@ -150,7 +150,7 @@ def heat_of_stop(
     Raises
     ------
     ValueError
-        If `stop` is no stop.
+        If `stop` is no `brakes.vehicle.Stop`.
 
     References
     ----------

@@ -52,7 +52,7 @@ class HydraulicLine:
         4.0
     )
     piston_travel: Annotated[
-        Numbers, Described("m", "s_w", "travel of each of them until the linings press", least=0)
+        Numbers, Described("m", "s_w", "travel of each piston until the linings press", least=0)
     ] = 0.0
     lost_travel: Annotated[
         Numbers, Described("m", "s_0", "travel of the master cylinder's piston before it presses", least=0)

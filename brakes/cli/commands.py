@@ -108,7 +108,7 @@ class Asked:
     finding : FindOptions
         The input that is sought.
     what : str, optional
-        Results with --vary or --spread, separated by commas; the file of --csv without them lists all names.
+        Results with --vary or --spread, separated by commas; without these, the --csv file lists all names.
     """
 
     varying: VaryOptions = NOTHING_VARIED
@@ -150,7 +150,7 @@ def run_command(
     further: Files | None = None,
     **options: object,
 ) -> None:
-    """Solve the design of a file, write the files that are asked for, and print the answer.
+    """Solve the design of a file, write the files that are asked for, and print the results.
 
     Parameters
     ----------
@@ -208,7 +208,7 @@ def run_command(
 
 
 def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callable[[], str]]]:
-    """Return title and HTML of each additional drawing of an answer, for a report."""
+    """Return title and HTML of each additional drawing of the results, for a report."""
     from beamdyn.common.screens.screens import FoldedPart
 
     folded = (FoldedPart.of_drawings(*each) for each in brake.more.items())
@@ -376,7 +376,7 @@ def forklift(
     file
         The truck, the stop, and one of its brakes; `brakes keys forklift` lists all keys.
     stage
-        What to show; what comes before it is computed where it is needed.
+        Stage to show; the stages before it are computed if they are needed.
     asked
         What is asked of many designs.
     outputs
@@ -390,7 +390,7 @@ def forklift(
 
 @app.command(help_epilogue=examples("brakes keys disc"))
 def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
-    """List the tables and keys of a file from which to begin: meaning, unit, bounds and default of each.
+    """List the tables and keys of a command's file, with meaning, unit, bounds and default of each.
 
     Parameters
     ----------
@@ -405,7 +405,7 @@ def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
     others = {each.name: each for each in (FORKLIFT, CALIPER, MECHANISM)}
     one_of("COMMAND", brake, [*STANDARD, *others])
     found = others.get(brake) or STANDARD[brake][1]()
-    about = 'A quantity is text with a unit, "50 mm"; a number without a unit and true or false stand bare.'
+    about = 'A quantity is text with a unit, "50 mm"; numbers without a unit, true and false have no quotes.'
     show([*keys_tables(found.inputs({}), found.optional), f"{found.together} {about}".lstrip()])
 
 
@@ -444,7 +444,7 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
 
     @app.command(name=name, help=help, help_epilogue=examples(plain, f"{plain} --plot {name}.png"))
     def answer_file(file: BrakeFile, /, *, asked: Asked = ONE_DESIGN, outputs: Outputs = NO_FILES) -> None:
-        """Answer a file.
+        """Solve the brake that a file describes, and print the results.
 
         Parameters
         ----------

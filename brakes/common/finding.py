@@ -1,9 +1,10 @@
 """Inverse questions: find all inputs between two bounds at which an answer has a wanted value.
 
-The answer is sampled, each time twice as densely, until the pieces over which it rises, falls or is level
-stay the same. The end of a piece (a turning point, or the last input that has an answer) is found by sampling
-more densely around it, several times. A rising or falling piece has the wanted value once if that lies
-between the answers at its two ends, else nowhere.
+An answer is a function of the input; it need not exist for all inputs. It is sampled, each time twice as
+densely, until the pieces over which it rises, falls or is level stay the same. The end of a piece (a turning
+point, or the last input that has an answer) is found by sampling more densely around it, several times. A
+rising or falling piece has the wanted value once if that lies between the answers at its two ends, else
+nowhere.
 
 References
 ----------
@@ -174,7 +175,7 @@ def find_whole(
 
 @dataclass(frozen=True)
 class _Answers:
-    """The given function, with its refusals converted to nan and a reason."""
+    """The function `answer`, with its refusals of inputs converted to nan and a reason."""
 
     answer: Answer
     reason: Callable[[float], str] | None
@@ -199,7 +200,7 @@ class _Answers:
         return np.where(np.isfinite(values), values, np.nan), refused
 
 
-# Pieces --------------------------------------------------------------------------------------------------
+# Pieces: ranges of inputs over which the answer rises, falls or is level ---------------------------------
 
 
 @dataclass(frozen=True)
@@ -213,7 +214,7 @@ class _Run:
 
 
 def _settle(answers: _Answers, x: np.ndarray) -> tuple[Curve, bool]:
-    """Double the samples until the rising, level and falling pieces stay the same.
+    """Double the samples of the answer until its rising, level and falling pieces stay the same.
 
     Return the curve, and whether the pieces stayed the same at the last doubling.
     """
@@ -374,7 +375,8 @@ def _solve(
 def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tuple[float, bool]:
     """Find the input at which the answer passes the wanted value in a bracket, and whether it jumps there.
 
-    The differences at both ends are given: computed again they may have another sign due to rounding.
+    `bracket` has answer minus wanted value at both ends: computed again these may have another sign due to
+    rounding.
     """
     from scipy.optimize import toms748  # imported here, because only inverse questions use it
 

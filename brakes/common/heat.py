@@ -95,20 +95,20 @@ class Duty:
     heated_mass: Annotated[Numbers, Described("kg", "m", "mass that one brake warms", above=0)]
     specific_heat: Annotated[Numbers, Described("J/kg/K", "c", "specific heat of that mass", above=0)] = 500.0
     load_torque: Annotated[
-        Numbers, Described("N m", "L", "torque that drives on, of a slope or a hanging load", least=0)
+        Numbers, Described("N m", "L", "driving torque, of a slope or a hanging load", least=0)
     ] = 0.0
     free_angle: Annotated[
-        Numbers, Described("rad", "", "angle that it turns in each stop before the torque is there", least=0)
+        Numbers, Described("rad", "", "rotation in each stop before the torque acts", least=0)
     ] = 0.0
     stops: Annotated[Numbers, Described("", "n", "number of stops", least=1, most=1000, whole=True)] = 1.0
     interval: Annotated[Numbers, Described("s", "t", "time from the end of a stop to the next", least=0)] = (
         0.0
     )
     cooling: Annotated[
-        Numbers, Described("W/K", "h", "heat lost then, over the difference to the surroundings", least=0)
+        Numbers, Described("W/K", "h", "heat flow to the surroundings between stops, per kelvin", least=0)
     ] = 0.0
     surroundings: Annotated[
-        Numbers, Described("K", "T_a", "temperature of the surroundings, and before the first stop", above=0)
+        Numbers, Described("K", "T_a", "temperature of surroundings, and of brake before first stop", above=0)
     ] = 293.15
     friction_curve: Annotated[
         list[list[float]] | None,
@@ -220,14 +220,14 @@ class Fade(Result):
 
     @property
     def refusals(self) -> tuple[str, ...]:
-        """Reasons why a stop has no answer: it does not end, or is hotter than the friction curve."""
+        """Reasons why a stop has no result: it does not end, or is hotter than the friction curve."""
         if np.ndim(self.status) == 0:
             return tuple(self.messages_of_cases(1).values())
         found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
         return tuple(f"{words}, in {np.sum(self.status == status)} cases" for status, words in found)
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Return by case index which stop has no answer, and why; `count` is the number of cases."""
+        """Return by case index which stop has no result, and why; `count` is the number of cases."""
         status, stops = (np.broadcast_to(x, (count,)) for x in (self.status, self.duty.stops))
         ended = np.isfinite(self.end).reshape(len(self.end), -1)
         first = np.broadcast_to(1 + ended.argmin(axis=0), (count,))

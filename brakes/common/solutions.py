@@ -1,4 +1,4 @@
-"""Result of an inverse question: the inputs at which an answer has a wanted value, or why there is none."""
+"""Result of an inverse question: inputs at which an answer (a function) has a wanted value, or why none."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Solutions(Result):
-    """All inputs between two bounds at which an answer has a wanted value.
+    """All inputs between two bounds at which an answer, a function of the input, has a wanted value.
 
     Attributes
     ----------

@@ -18,7 +18,7 @@ from brakes.planar.rows import Point as Coordinates
 
 SHORT_TEXTS = ConfigDict(str_max_length=200)  # limit of titles and names, which are drawn
 
-# Kinds of values ----------------------------------------------------------------------------------
+# Inputs that are points, directions or travels ----------------------------------------------------
 
 
 _FARTHEST = 1e6  # largest coordinate of a mechanism [m], larger than any real one
@@ -77,7 +77,9 @@ QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuanti
 # The stroke of a caliper, and the stop ------------------------------------------------------------
 
 
-_DRIVER = Field(description="load that drives a plain mechanism; with friction, its motion is squeezing")
+_DRIVER = Field(
+    description="load that drives a mechanism without [caliper]; with friction, its motion is squeezing"
+)
 _FRICTION = Quantity("", "mu", "friction of the pins that have none of their own", least=0, most=10)
 _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]
 

@@ -96,7 +96,7 @@ class DrumInput(CoreSection):
 
     @cached_property
     def core(self) -> DrumBrake:
-        """The brake of these shoes."""
+        """The brake with the shoes of the file."""
         given = {key: value for key, value in self.second_shoe or () if value is not None}
         try:  # inputs that [second_shoe] leaves out are those of the first shoe
             second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None

@@ -110,7 +110,7 @@ else:
 _BY_FOOT = "force of the piston on the trailing shoe; by [pedal] and [line] if given"
 _PISTON = Quantity("N", "P_T", _BY_FOOT, above=0)
 _TORQUE = Quantity("N m", "T", "torque of one brake; if not given, that of the stop", above=0)
-_COMPARED = "friction of the linings: compared with what the torque needs, or gives the torque"
+_COMPARED = "friction of the linings: gives the torque, or is compared with what a given torque needs"
 _LINING = Quantity("", "mu_l", _COMPARED, above=0, most=10, remedy="40 % is 0.4")
 
 
@@ -125,7 +125,7 @@ class ForcesInput(Section):
 class ForkliftInput(Section):
     """File of a forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], for the stages wanted.
 
-    [pedal], [line], [drums] and [heat] need all of them.
+    [pedal], [line], [drums] and [heat] need the tables of all stages.
     """
 
     truck: _TruckInput | None = None

@@ -117,7 +117,7 @@ class MechanismInput(config.CoreSection):
                 raise InvalidInput("run.friction", friction, bound) from None
             made = Mechanism(tuple(self.bodies), tuple(joints), tuple(loads))
             if friction and not made.friction:
-                bound = "it is that of pins, and there is none; give friction at the slot or contact"
+                bound = "it is that of pins, and there are no pins; give friction at the slot or contact"
                 raise InvalidInput("run.friction", friction, bound)
             rubs = made.friction or "friction" in self.run.model_fields_set  # friction may be 0 in a sweep
             if self.run.driver is not None and self.run.travel is None and not rubs:
@@ -203,7 +203,7 @@ def inputs_of_tables(tables: Mapping[str, Any]) -> list[Input]:
     """Return the inputs of the caliper or mechanism that the tables of a file describe.
 
     A caliper without dimensions has the inputs that all calipers have; a mechanism has an input for each
-    point, for each list of joints or loads, and for all else.
+    point, for each list of joints or loads, and for each key outside of these.
     """
     name, points = tables.get("caliper"), tables.get("points")
     if isinstance(name, str):

@@ -17,7 +17,7 @@ from brakes.machines import Disc as DiscBrake
 _UP, _LEFT, _BOTH = (0.0, 1.0), (-1.0, 0.0), (1.0, -1.0)
 
 
-# Results --------------------------------------------------------------------------------------------------
+# Drawings of results --------------------------------------------------------------------------------------
 
 
 def draw_disc(result: MachineResult) -> Drawing:
@@ -57,7 +57,7 @@ def _draw_section(result: MachineResult, add: Callable[[list[DrawnShape], Any], 
     return arrows.drawing(title, words, {"load": "actuating force P"})
 
 
-# The machines ---------------------------------------------------------------------------------------------
+# Shapes of disc, plates and cone --------------------------------------------------------------------------
 
 
 def _add_disc(shapes: list[DrawnShape], disc: DiscBrake) -> None:

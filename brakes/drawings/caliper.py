@@ -202,7 +202,7 @@ def _symbols() -> Drawing:
 
 
 def _directions() -> Drawing:
-    """Sketch the directions of some angles."""
+    """Sketch which directions 0, 90 and -30 degrees have."""
     s = Sketch()
     for words, way in {"0 deg": (1.0, 0.0), "90 deg": (0.0, 1.0), "-30 deg": (0.87, -0.5)}.items():
         s.add(Arrow((0.0, 0.0), way, "load", words, 1.6))

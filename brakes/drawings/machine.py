@@ -78,7 +78,7 @@ def factor_chart(result: MachineResult) -> Chart:
 def over_friction(
     title: str, curves: Sequence[ChartCurve], marks: Sequence[ChartMark], near: float | None
 ) -> Chart:
-    """Make a chart of C* over friction; an unbounded C* is cut off at a multiple of a usual value."""
+    """Make a chart of C* over friction; if `near` is given, C* is cut off at 2.5 times that, at least 1."""
     high = None if near is None else max(2.5 * near, 1.0)
     factor = ChartAxis("C* = torque / (force radius)", low=0.0, high=high)
     return Chart(title, ChartAxis("friction of the linings", low=0.0), factor, curves, marks=marks)

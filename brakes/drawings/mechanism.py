@@ -31,9 +31,9 @@ from brakes.planar import GROUND, Equilibrium, Load, Position, free_body
 
 _KEY = {"tension": "tension", "compression": "compression", "load": "load", "reaction": "reaction"}
 _MM = 1e3
-_LONGEST = 0.28  # length of the longest arrow, over the size of the mechanism
+_LONGEST = 0.28  # length of the longest arrow, over the diagonal of the mechanism
 _SHORTEST = 1e-6  # arrows shorter than this are not drawn [mm]
-_ASIDE = 0.17  # distance from the mechanism's middle, over the size, beyond which arrows may point inwards
+_ASIDE = 0.17  # distance from the middle, over the diagonal, beyond which arrows may point inwards
 _ALONG = np.array([0.55, 0.4, 0.7, 0.25, 0.85])  # fractions of a member's length at which its label may stand
 _CABLE = (5.0, 3.0)
 _SPRING = (1.5, 2.0)

@@ -9,7 +9,7 @@ import numpy as np
 
 from brakes.planar import GROUND, Equilibrium, Mechanism, Position, Shape, free_body
 
-_FLAT = 1e-12  # triangle area over the square of the size, below which three points count as collinear
+_FLAT = 1e-12  # triangle area over squared extent of all points, below which three points count as collinear
 
 
 class Member(NamedTuple):

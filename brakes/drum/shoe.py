@@ -24,7 +24,7 @@ from brakes.common.locking import LEAST_MARGIN, SlidesOrLocks
 
 _START = "start of the lining, from straight down, where the pin is"
 _END = "end of the lining, from straight down"
-_OFFSET = "distance of the pin from the brake's line of symmetry, to its shoe"
+_OFFSET = "distance of the pin from the brake's line of symmetry, positive towards its shoe"
 _DEPTH = "depth of the pin below the drum's centre"
 _FORCE_ARM = "height of the actuating force above the drum's centre; its arm about the pin is a + c"
 _PRESSURE_ZERO = (

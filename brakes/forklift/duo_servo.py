@@ -46,7 +46,8 @@ class DuoServo(HasLevers):
     face_tilt : float or ndarray
         Tilt alpha1 = alpha2 of the piston's face [rad]: its normal is (cos, -sin) of the tilt.
     contact_angle : float or ndarray
-        Angle of the lining's contact point, from +x upward [rad]; at rest its radius is r - clearance.
+        Angle of the lining's contact point, from +x upward [rad]; at rest its distance from the centre is r
+        minus the clearance, an argument of `move_shoes`.
     piston_bottom : float or ndarray
         Travel of the piston from rest to its bottom, inward [m].
     piston_stroke : float or ndarray, optional
@@ -124,7 +125,7 @@ class DuoServo(HasLevers):
         outside = np.hypot(*tip) >= self.drum_radius * (1 - LEAST_MARGIN)
         bound = "larger than the drum allows: the shoe's tip would leave it before the lining touches"
         refuse(outside, "clearance", c, "m", bound, advice)
-        # The rotation psi of stage 2 pushes the right piston to its bottom.
+        # Stage 2: shoes and adjuster turn by psi with the drum, until the right piston reaches its bottom.
         lowest = (self.piston_position(*self.tip) - self.piston_bottom) * np.cos(self.face_tilt)
         psi = _arccos(lowest / np.hypot(*tip)) - self.face_tilt - np.arctan2(tip[1], tip[0])
         bound = "larger than the drum allows: the piston does not reach its bottom"
@@ -132,7 +133,7 @@ class DuoServo(HasLevers):
         return self._assemble_motion(c, turn, psi, tip)
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """Compute the lever arms, with bounds of their relative errors and of the errors of angles [rad]."""
+        """Compute the lever arms, with one bound of their relative errors and of the angles' errors [rad]."""
         if clearance is None:
             raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
         return self.move_shoes(clearance).levers_and_error()
@@ -150,7 +151,7 @@ class DuoServo(HasLevers):
         return np.arctan2(across, along) - _arccos(target / np.hypot(along, across))
 
     def _after_seating(self, turn: np.ndarray, x: Numbers, y: Numbers) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the position after stage 1 [m] of a point that belongs to the right shoe at rest."""
+        """Compute where a point of the right shoe, at (x, y) at rest, is after stage 1 [m]."""
         hx, hy = self.adjuster
         dx, dy = _turned(x - hx, y - hy, -turn)
         return hx + dx, hy + dy
@@ -275,7 +276,7 @@ class ShoeMotion(HasLevers, Result):
         return (seating + moved + _error_of_arccos(face + moved, np.sin(height)))[()]
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """Return the lever arms, with bounds of their relative errors and of the errors of angles [rad]."""
+        """Return the lever arms, with one bound of their relative errors and of the angles' errors [rad]."""
         least = np.minimum(self.levers.a1, self.levers.a2)
         return self.levers, self.error * self.geometry.drum_radius / least
 

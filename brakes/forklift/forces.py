@@ -293,7 +293,10 @@ def _solve_from_friction(levers: Levers, P_T: Numbers, mu: Numbers, rounding: Nu
 
 
 def _force_across_shoe(P: Numbers, a: Numbers, b: Numbers, phi: Numbers, s: Numbers) -> np.ndarray:
-    """Solve X b - P a = s |P + X| for the force X [N] at a shoe's other end; phi is the angle from P."""
+    """Solve X b - P a = s |P + X| for the force X [N] at a shoe's other end, at the angle phi from P.
+
+    As in the module, s = r mu / sqrt(1 + mu^2) [m] for the friction mu and the drum's radius r.
+    """
     half = a * b + s**2 * np.cos(phi)
     root = s * np.sqrt(a**2 + b**2 + 2 * a * b * np.cos(phi) - (s * np.sin(phi)) ** 2)
     return P * (half + root) / (b**2 - s**2)

@@ -1,8 +1,9 @@
 """The two stages of a duo-servo brake's motion as planar mechanisms, followed position by position.
 
-Stage 1, on each side: shoe, dummy, piston (9 unknowns). The shoe is pinned at the adjuster (2 equations) and
-to the dummy at its tip (2), the dummy slides on the piston's face (2), the piston in the cylinder (2): one
-degree of freedom is left, and is followed until the contact point reaches the drum.
+Stage 1, on each side: shoe, dummy, piston (9 unknowns); the dummy is a small body between shoe and piston.
+The shoe is pinned at the adjuster (2 equations) and to the dummy at its tip (2), the dummy slides on the
+piston's face (2), the piston in the cylinder (2): one degree of freedom is left, and is followed until the
+contact point reaches the drum.
 
 Stage 2: drum, two shoes, adjuster, two dummies, two pistons (24 unknowns). The drum is pinned (2), the
 right shoe welded to it (3), the left one pinned at the drum's centre with its lining seated (2); the adjuster
@@ -178,7 +179,7 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
 
     References
     ----------
-    Yoo et al. (1997), section 3, in closed form (own).
+    Yoo et al. (1997), section 3.
 
     Examples
     --------

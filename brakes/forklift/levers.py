@@ -38,7 +38,7 @@ class HasLevers:
         return self.levers_and_error(clearance)[0]
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """Find the lever arms, with bounds of their relative errors and of the errors of angles [rad]."""
+        """Find the lever arms, with one bound of their relative errors and of the angles' errors [rad]."""
         raise NotImplementedError
 
 

@@ -228,7 +228,7 @@ class Cone(Ring):
 
     reactions: ClassVar[Mapping[str, Meaning]] = MappingProxyType(
         {
-            "normal": Meaning("N", "sum of the pressure"),
+            "normal": Meaning("N", "pressure times area"),
             "release": Meaning("N", "force that pulls it apart; below 0 it opens by itself"),
         }
     )

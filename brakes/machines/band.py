@@ -76,7 +76,7 @@ class Band(Machine):
         {
             "first": Meaning("N", "tension of the first end"),
             "second": Meaning("N", "tension of the second end"),
-            "fulcrum": Meaning("N", "force on the fulcrum, of a force along the band's line of symmetry"),
+            "fulcrum": Meaning("N", "force on the fulcrum, for a lever force along the line of symmetry"),
             "bearing": Meaning("N", "force of the band on the drum's bearing"),
         }
     )
@@ -84,7 +84,7 @@ class Band(Machine):
 
     def check(self) -> None:
         """Check that the lever tightens the band."""
-        bound = "it must be below {other}, {limit}: the lever would loosen the band"
+        bound = "it must be below {other}, {limit}: otherwise the lever loosens the band"
         bad = np.asarray(self.second_arm) >= self.first_arm
         remedy = "exchange the two ends, or shorten it"
         refuse(

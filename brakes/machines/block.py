@@ -49,7 +49,8 @@ class Block(Machine):
     blocks : {"single", "double"}
         One lever, or two whose blocks lie on opposite sides of the drum.
     pressure_law : {"wear", "pressure", "short"}
-        Pressure distribution along the block.
+        Pressure as the sine of the angle from the fulcrum ("wear"), uniform pressure along the block
+        ("pressure"), or all forces at the block's middle ("short").
 
     Raises
     ------

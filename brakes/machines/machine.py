@@ -104,7 +104,8 @@ class Machine(ABC):
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
         """Compute torque and forces of each lining at a largest pressure of 1 Pa, by name.
 
-        The friction may be complex: no branches depend on it, and no absolute value is taken of it.
+        The friction may be complex, for complex-step derivatives: an implementation has no branches that
+        depend on it, and takes no absolute value of it.
         """
 
     @property
@@ -114,7 +115,7 @@ class Machine(ABC):
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius [m] whose product with the largest pressure is the largest of pressure times radius."""
+        """Radius [m] that, times the largest pressure, gives the largest product of pressure and radius."""
         return self.reference_radius
 
     @abstractmethod

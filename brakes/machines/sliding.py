@@ -88,7 +88,7 @@ class Sliding(Machine):
         Numbers, Described("rad", "alpha2", "end of the lining, from straight down", above=0, most=np.pi)
     ]
     abutment_offset: Annotated[
-        Numbers, Described("m", "b", "distance of the abutment from the line of symmetry, to its shoe")
+        Numbers, Described("m", "b", "distance of the abutment from the line of symmetry, towards its shoe")
     ]
     abutment_depth: Annotated[
         Numbers, Described("m", "c", "depth of the abutment below the drum's centre", above=0)
@@ -96,7 +96,13 @@ class Sliding(Machine):
     force_arm: Annotated[Numbers, Described("m", "a", "height of the force above the drum's centre", least=0)]
     abutment_angle: Annotated[
         Numbers,
-        Described("rad", "psi", "abutment's force above the actuating one", least=-np.pi / 4, most=np.pi / 4),
+        Described(
+            "rad",
+            "psi",
+            "angle of the abutment's force above the actuating force",
+            least=-np.pi / 4,
+            most=np.pi / 4,
+        ),
     ] = 0.0
     shoes: Annotated[Literal["single", "simplex", "duplex"], Described(meaning=_SHOES)] = "simplex"
 
@@ -143,7 +149,7 @@ class Sliding(Machine):
         return {f"shoe {i + 1}, {_word(each)}": self._shoe(friction, each) for i, each in enumerate(leads)}
 
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
-        """Compute the pressure on a leading shoe at angles from straight down [rad], over its largest."""
+        """Compute pressure / largest pressure on a leading shoe, at angles from straight down [rad]."""
         return self._pressure(at, friction, leads=True)
 
     def pressure_on(self, index: int, at: Numbers, friction: Numbers, reverse: bool) -> Numbers:
@@ -179,7 +185,7 @@ class Sliding(Machine):
 
     def _newton(self, delta: np.ndarray, mu: Numbers, s: float) -> Any:
         """Improve the angle of zero pressure [rad] by a Newton step; mu may be complex (complex step)."""
-        with np.errstate(divide="ignore", invalid="ignore"):  # without equilibrium
+        with np.errstate(divide="ignore", invalid="ignore"):  # nan if the shoe has no equilibrium
             slope = self._residual(delta + 1j * _TURN_STEP, np.real(mu), s).imag / _TURN_STEP
             return delta - self._residual(delta, mu, s) / slope
 

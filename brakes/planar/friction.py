@@ -34,8 +34,8 @@ class FrictionalEquilibrium:
     Parameters
     ----------
     squeeze, release : Equilibrium
-        Equilibria with friction while the driver's coordinate grows, and while it decreases.  If no unknown
-        load with its direction without friction can move the mechanism this way, the status is
+        Equilibria with friction while the driver's coordinate grows, and while it decreases.  If the unknown
+        load, in the direction that it has without friction, cannot move the mechanism this way, the status is
         "self-locking".  The load then acts in the opposite direction; if the mechanism jams, so that no load
         moves it, all forces are nan.
     without : Equilibrium
@@ -66,9 +66,9 @@ def solve_with_friction(
     """Compute reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
 
     A pivot of radius r resists with the couple r mu/sqrt(1 + mu^2) |reaction|, a contact or slot with the
-    force mu |reaction|, each against the relative velocity of the motion that the driver causes.  It is
-    solved by Newton's method with friction that grows from zero, so that a branch which ends in self-locking
-    is noticed.
+    force mu |reaction|, each against the relative velocity of the motion that the driver causes.  The
+    equations are solved by Newton's method with friction that grows from zero, so that a branch which ends in
+    self-locking is noticed.
 
     Parameters
     ----------
@@ -142,7 +142,7 @@ def _branch(
     forces = decompose(balance.matrix, system.rounding)
     regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
     kept = regularity[:, -1] / regularity[:, 0]
-    jammed |= kept <= rank_tolerance(system.rounding)  # so nearly singular that rounding would decide
+    jammed |= kept <= rank_tolerance(system.rounding)  # rounding would decide whether it jams
     multiplier[jammed] = start[jammed]
     result = collect_result(position, balance, forces, multiplier, jammed, kept)
     if (jams & ~jammed).any():

@@ -136,7 +136,7 @@ class CablePair(part.BetweenPoints, part.AppliedLoad):
 
 @dataclass(frozen=True)
 class Spring(part.BetweenPoints, part.Load):
-    """A linear spring between points of two bodies, which pulls with stiffness * (length - free).
+    """A linear spring between points of two bodies; it pulls with stiffness * (length - free length).
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ on the bodies, for a unit multiplier (of a joint) or a unit magnitude (of a load
 - `bodies` on which it acts, and `ends`, its points, from which the scales of the mechanism are set;
 - `add`, which evaluates all rows of this kind at once from columns, and `entries`, a row's values in these
   columns after its index;
-- `constant`: the part of its value that does not depend on the position, with lengths over the mechanism's;
+- `constant`: the part of its value that does not depend on the position, lengths divided by the mechanism's;
 - `effects`: forces and couples on a body for a size of the row, for free-body diagrams.
 
 In shapes of arrays, S counts positions, n bodies, and R rows.
@@ -51,7 +51,7 @@ def check_point(key: str, value: object) -> Point:
 
 
 def unit_vector(key: str, value: object) -> Point:
-    """Return the unit vector along two components; raise a ValueError that names the key if it has none."""
+    """Return the unit vector of a direction (x, y); raise a ValueError with `key` if it is (0, 0) or none."""
     x, y = check_point(key, value)
     size = math.hypot(x, y)
     if not size:
@@ -113,7 +113,7 @@ class Place(Protocol):
     """Interface of a position at one instant, such as `Position`."""
 
     def point(self, body: str, at: Point) -> np.ndarray:
-        """Return the place of a body's point [m], shape (2,)."""
+        """Return the position of a body's point [m], shape (2,), given by its position in the drawing."""
         ...
 
     def angle(self, body: str) -> np.ndarray:
@@ -139,7 +139,7 @@ class _AtPoint(ABC):
 
     @property
     def ends(self) -> tuple[End, End]:
-        """The point, and a point of the line or the centre of the circle."""
+        """The body's point, and a point of the other body's line or the centre of its circle."""
         return (self.body, self.at), (self.other, self.on)
 
     @abstractmethod

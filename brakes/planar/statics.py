@@ -180,8 +180,8 @@ def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium
 
     References
     ----------
-    Virtual work (standard): the transposed Jacobian of the constraints balances the loads; own: what its null
-    spaces name.
+    Virtual work (standard): the transposed Jacobian of the constraints balances the loads.  Which bodies are
+    loose and which forces undetermined follows from its null spaces (derived here).
 
     Examples
     --------
@@ -302,7 +302,7 @@ def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str
 def is_answer(status: str, forces: ArrayLike) -> bool:
     """Return whether forces are possible: none is nan, no contact pulls, and no cable pushes.
 
-    A self-locking mechanism moves by the given forces, so that these count as an answer.
+    A self-locking mechanism moves by the given forces, so that these count as possible.
 
     Parameters
     ----------

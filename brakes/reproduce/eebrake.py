@@ -26,7 +26,7 @@ def sections() -> dict[str, list[Comparison]]:
     (f_t, x_work), (_, x_equal) = tangential_forces("equal work"), tangential_forces("equal force")
     gap = (x_work - f_t) / x_work
     percent = statics["difference_percent"], 100 * gap, 100 * _ERROR, 1, "cut off, not rounded"
-    equal = "with equal pads X = f_t follows from the mean pad travel; the page's tension is another"
+    equal = "equal pad forces give X = f_t, by virtual work in mean pad travel; the page's tension differs"
     run = _stroke("equal force", _CABLE)
     finger, pad = 1e3 * float(run.finger[-1]), 1e3 * float(run.pad_travel[-1].mean())
     mean = float(run.finger[-1] / run.pad_travel[-1].sum())
@@ -79,7 +79,7 @@ def notes() -> list[str]:
 
 
 def _with_curves() -> Figure:
-    """Draw the closed brake with its curves over the stroke."""
+    """Draw the brake open and closed, and its advantage, pad ratio and reactions over the stroke."""
     caliper = EeBrake().build()
     return caliper_figure(caliper, caliper.stroke(_CABLE), caliper.equilibrium(_CABLE))
 

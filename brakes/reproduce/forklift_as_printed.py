@@ -6,10 +6,11 @@ count from the axle), g = 9.806 m/s2, and a factor 0.97 on the slope's pull, of 
 numbers does not fit. The printed torque is about 30 % too high: safe for strength, unsafe for the stopping
 distance.
 
-Errata: (3) omits the moment of the brake torque on the body. (6) has theta' instead of theta''. (18) is g_c.
-(19) and (22) ignore the speed lost while the brake force rises. (25) has m_B b instead of m_A b. The text
-before (21) should read: from 0 to A. (26) is for the axle, Tables 4 and 5 for one brake. Table 7 gives the
-clearance in metres without saying so. Inputs and errata are read from ``brakes/published/yoo_1997.toml``.
+Errata: (3) omits the moment of the brake torque on the body. (6) has theta' instead of theta''. (18) defines
+g_c, not g. (19) and (22) ignore the speed lost while the brake force rises. (25) has m_B b instead of m_A b.
+The text before (21) should read: from 0 to A. (26) is for the axle, Tables 4 and 5 for one brake. Table 7
+gives the clearance in metres without saying so. Inputs and errata are read from
+``brakes/published/yoo_1997.toml``.
 
 `newton_raphson` is the paper's iteration on its ten equations (27)-(36).  The result depends on the start:
 from most random starts the iteration diverges, or converges to one of the three mirror images of the
@@ -121,7 +122,7 @@ def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> F
     Returns
     -------
     ForkliftAnswer or None
-        The answer; None if the stages do not depend on the stop.
+        The results; None if the stages do not depend on the stop.
 
     Raises
     ------

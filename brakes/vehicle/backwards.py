@@ -45,7 +45,7 @@ class Needed(Result):
     --------
     >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
     >>> vehicle.friction_to_hold(bicycle, slope=0.6, braked="front", downhill="front").message
-    'none: the vehicle tips over its lower axle before, whatever the friction'
+    'none: the vehicle tips over its lower axle, whatever the friction'
     """
 
     value: Annotated[Numbers, Meaning("", "the needed value")]
@@ -172,7 +172,7 @@ def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axl
     with np.errstate(divide="ignore", invalid="ignore"):
         friction = np.maximum(ratio, 0.0) / np.where(share > 0, share, np.nan)
     much = f"even a friction of {MOST_FRICTION:g}, the most that is taken, holds less"
-    tips = "the vehicle tips over its lower axle before, whatever the friction"
+    tips = "the vehicle tips over its lower axle, whatever the friction"
     return needed(friction, (lifted, tips), (~(friction <= MOST_FRICTION), much))
 
 

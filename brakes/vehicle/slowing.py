@@ -49,7 +49,8 @@ class Approach:
     rise_time : float or ndarray
         Time t2 in which the braking force rises linearly [s].
     brake_force : float or ndarray, optional
-        Force B along the ground that the brakes of all wheels can give [N].
+        Force B along the ground that the brakes of all wheels can give [N]; in a file, by default that of the
+        lever or, without one, the largest at which no wheel locks.
     heading : {"downhill", "uphill"}
         Direction of travel on the slope.
 
@@ -259,7 +260,7 @@ def _ratio(vehicle: Vehicle, friction: Numbers, braked: dict[Axle, Any], leading
         locked.append(np.where(left > 0, held / np.where(left > 0, left, 1.0), np.inf))
     sums = np.stack(np.broadcast_arrays(rolling, *locked, friction))
     least, pitching = sums.min(axis=0), vehicle.pitching_ratio(leading)
-    # If two ratios are equal, the state with fewer locked wheels is chosen.
+    # Of states with the same braking ratio within rounding, the one with the fewest locked wheels is chosen.
     first = np.argmax(sums <= least * (1 + _EDGE), axis=0)
     lifts = least >= pitching * (1 - _EDGE)
     status = np.where(lifts, _PITCHES, np.array(_STATES)[first])

@@ -200,7 +200,7 @@ class Stop(Result):
 
     @property
     def residual(self) -> Numbers:
-        """Residual moment of the axle forces about the centre of gravity, over weight times wheelbase."""
+        """Residual moment of the axle forces about the centre of gravity, divided by weight and wheelbase."""
         (a, y), truck, c = self.truck.cg, self.truck, self.conditions
         height, friction = y + truck.front_wheel_radius, c.sense * self.brake_force
         moment = (truck.wheelbase - a) * self.rear_load - a * self.front_load - height * friction

@@ -108,8 +108,8 @@ def test_what_cannot_be_had_says_why(run, truck):
         "vehicle", truck, ('travel = "300 mm"', 'travel = "200 mm"'), ('slope = "15 %"', 'slope = "30 %"')
     )
     said = " ".join(out.split())
-    assert "front downhill: none: the vehicle tips over its lower axle before, whatever the friction" in said
-    assert "none: the travel runs out before" in said or "ratio of the lever" in said
+    assert "front downhill: none: the vehicle tips over its lower axle, whatever the friction" in said
+    assert "none: the pedal reaches the end of its travel" in said or "ratio of the lever" in said
 
 
 def test_the_bicycle_pitches_over(run):
