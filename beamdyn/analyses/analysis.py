@@ -81,7 +81,7 @@ class AsText:
         return option.replace(annotation=Annotated[str, *notes], default=default)
 
     def value(self, option: str, text: str | None, scene: Scene) -> Any:
-        """Return the value that a text means, or the value of an option that is not given."""
+        """Return the value that a text means, or, if the option is not given, its default for the scene."""
         if text is None:
             return None if self.absent is None else self.absent(scene)
         return self.read(option, text, scene)

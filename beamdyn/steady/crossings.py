@@ -179,8 +179,8 @@ def left_out_of_crossings(
 ) -> LeftOutEffects:
     """Estimate relative changes of resonance speeds (k,) by each effect left out, to first order.
 
-    The relative change of a resonance speed is that of the frequency, over 1 - (speed/frequency) times the
-    slope of the frequency over speed.
+    The relative change of a resonance speed is that of the frequency divided by 1 - (v/f) df/dv, with the
+    speed v and the sum f of the frequencies that resonate.
 
     Parameters
     ----------

@@ -200,7 +200,7 @@ def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray)
 
 
 def _answer_strain(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    """Find the largest strain in steady response: of a harvester's layers, or along the beam."""
+    """Find the largest strain in steady response: of piezoelectric layers, or, without any, of the beam."""
     if scene.beam.electrodes is not None:
         found = harvest(scene, np.unique(speeds), **_options_of_responses(question))
         return _at_each(speeds, found, (found.strain, found.strain_error, np.asarray(found.status)), None)

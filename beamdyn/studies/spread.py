@@ -116,7 +116,7 @@ class SceneSpread(Spread, StatesModelError):
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of tables and columns: SI, as for brakes, unless `in_units` has set others."""
+        """Units of tables and columns: SI, unless `in_units` has set others."""
         return vars(self).get("_display_units") or SI_UNITS
 
     @cached_property

@@ -60,7 +60,10 @@ def transient_loads_table(result: TransientLoads, window: tuple[float, float] | 
 def _table(
     result: bd.SpanLoads, title: str, case: int | None, values: Mapping[str, np.ndarray] | None = None
 ) -> Group:
-    """Make rows of stations: axial and shear forces, moments, and the largest strain and stress."""
+    """Make a table with a row per station: axial and shear forces, moments, largest strain and stress.
+
+    The loads are `values` if given, otherwise those of the case (speed) with the index `case`.
+    """
     columns = [_positions(result)]
     for name in _QUANTITIES:
         found = result.values(name)[case] if values is None else values[name]
@@ -126,7 +129,7 @@ def _say_largest(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
 
 
 def _say_component(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
-    """Describe the direction of a component, or the point of the cross-section with its coordinates."""
+    """Describe the direction of a force or moment, or the point of the section of a strain or stress."""
     named = result.components(found.quantity)[found.component]
     if found.quantity not in ("strain", "stress"):
         return f"shear, {named}" if found.quantity == "force" and found.component else named
@@ -167,7 +170,7 @@ _ESTIMATE = (
 
 
 def _expected(value: float, error: float = 0.0) -> str:
-    """Format a statistical number with three digits, without a positive exponent; or "0 ± error"."""
+    """Format a statistical number with three digits, or as "0 ± error"; without a positive exponent."""
     text = supported(value, error, _DIGITS_EXPECTED)
     return f"{float(text):.0f}" if "e+" in text and "±" not in text else text
 
@@ -253,7 +256,7 @@ def _places(result: bd.SpanLoads, times: int = 1) -> tuple[Column, Column]:
 
 
 def _of_components(result: bd.SpanLoads, part: str, values: np.ndarray) -> Iterator[Column]:
-    """Yield a column for each component of all quantities, from values (rows, components)."""
+    """Yield columns of values (rows, components of all quantities); their names begin with `part`."""
     named = ((name, unit) for name, unit in UNITS.items() for name in _components(result, name))
     for (name, unit), column in zip(named, values.T, strict=True):
         yield Column(f"{part}{name}", column, unit)

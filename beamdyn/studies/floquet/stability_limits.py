@@ -192,7 +192,7 @@ _SLACK = 0.5  # fraction of a cell by which a polygonal curve may miss an edge t
 class LimitPoint(NamedTuple):
     """Point of a stability limit in the chart.
 
-    Position (2,) as fractions of the ranges of the two numbers, its error in the same unit, and the Floquet
+    Position (2,) as fractions of the ranges of the two varied numbers, its error likewise, and the Floquet
     multiplier that leaves the unit circle there.
     """
 
