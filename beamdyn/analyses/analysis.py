@@ -271,7 +271,7 @@ class Analysis:
         return made if isinstance(made, Answer) else Answer(made)
 
     def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:
-        """Sort options into output files, input files and folders, and options that a report repeats."""
+        """Return output files by option, paths in other options, and all options except output files."""
         # Values and annotations of options; options in a group are listed one by one.
         options: dict[str, tuple[Any, Any]] = {}
         for name, value in given.items():

@@ -22,7 +22,7 @@ from beamdyn.scene.scene import SceneResult
 
 KINDS = ("forced", "parametric")
 _STEP = 1e-4  # relative step of the speed for the slope of the frequencies
-_FURTHER_MODES = 2  # number of further modes, whose order by frequency may change with speed
+_FURTHER_MODES = 2  # number of modes solved in addition: the order of modes may change with speed
 
 
 @dataclass(frozen=True)

@@ -38,7 +38,7 @@ _HIGHEST_ORDER = 20  # highest accepted order of lines, whose search takes ten s
 _NODES = 400  # number of intervals of speed in which roots are bracketed
 # Number of intervals of speed with large deflection: an equilibrium is solved at each, and loci are smooth.
 _BENT_NODES = 100
-_FURTHER_MODES = 2  # number of further modes computed, because modes of other uncoupled parts may be lower
+_FURTHER_MODES = 2  # number of modes solved in addition: modes of other parts may become lower with speed
 
 
 @statements.announced

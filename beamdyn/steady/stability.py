@@ -41,7 +41,7 @@ _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant har
 _MOST_OUTSIDE = 0.1  # largest share of an accepted eigenvector in the outermost harmonics
 _SAME_RATE = 0.05  # growth rates this close, over their change by the resonance, are those of one exponent
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
-_OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the matrix is singular
+_OFF = 1e-4  # offset of a shift from an eigenvalue, over the largest |eigenvalue|, to avoid a singular matrix
 _SINGULAR = (
     "the equations with periodic coefficients are singular: the excitation is too strong for "
     "the beam's stiffness; check the size and the unit of each value"

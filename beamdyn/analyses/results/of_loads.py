@@ -176,7 +176,7 @@ def _expected(value: float, error: float = 0.0) -> str:
 
 
 def _say_expected(result: bd.RandomLoads, found: bd.LargestLoad) -> str:
-    """Format the largest expected value of a quantity, its parts, and the value exceeded in 1 % of cases."""
+    """Format a quantity's largest expected value, constant part, part by gravity, rms and 99 % quantile."""
     name, (scale, unit) = found.quantity, SHOWN[found.quantity]
     place = result.station_of(found), found.component
     value = _expected(scale * found.value, scale * found.error)
@@ -263,7 +263,7 @@ def _of_components(result: bd.SpanLoads, part: str, values: np.ndarray) -> Itera
 
 
 def random_loads_csv(result: bd.RandomLoads) -> Columns:
-    """Make columns with one row per station: position, and each component's largest value with its parts."""
+    """Make columns with one row per station: position, and largest value, rms, mean of each component."""
     parts = {
         "largest": lambda name: result.values(name)[0],
         "error_of_largest": lambda name: result.error_of(name)[0],

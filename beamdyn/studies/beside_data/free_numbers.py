@@ -26,7 +26,7 @@ _CLAMPED = 1e-5  # relative compliance below which the root counts as clamped
 _FIRST = 0.1  # start value of the variable of a spring or body that the scene does not have
 _SOFTEST = 1e3
 _TIMES = 10.0  # a number is searched between a tenth of its value and ten times its value
-_TURN = math.pi / 2  # an angle is searched within 90 degrees on either side
+_TURN = math.pi / 2  # an angle is searched within 90 degrees on either side of its value
 
 
 @dataclass(frozen=True)

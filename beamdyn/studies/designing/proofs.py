@@ -43,7 +43,7 @@ class _RuledOut(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """Logarithms of the smallest and largest factor between two designs' results, by target or bounds."""
+    """Logarithms of the smallest and largest factor between two designs' results; `says` names the limit."""
 
     says: str
     least: float

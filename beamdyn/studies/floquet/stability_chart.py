@@ -323,7 +323,10 @@ class _Grid:
         return [each for k in sorted(found) for each in found[k]]
 
     def _sets_the_period(self, place: int) -> bool:
-        """Return whether the period is inverse to an input, whose reciprocal is then a smoother variable."""
+        """Return whether the period is inversely proportional to the input with the index `place`.
+
+        The reciprocal of such an input is a smoother variable.
+        """
         first, values = self.numbers(0), self.inputs[place].values
         ends = [{**first, self.inputs[place].name: float(values[k])} for k in (0, -1)]
         periods = np.array([period_of(self.scenes.at(end)).time for end in ends])

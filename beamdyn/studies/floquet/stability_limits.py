@@ -290,7 +290,10 @@ class LimitTracer:
         return self._point(low + x * (high - low), (high - low) / np.linalg.norm(high - low))
 
     def _trace(self, first: LimitPoint, along: np.ndarray, side: float) -> list[LimitPoint]:
-        """Trace a limit from a point until the chart ends, the curve closes, or steps become too small."""
+        """Trace a limit from a point; unstable motion is to the left (side 1) or right (-1) of `along`.
+
+        The trace ends at the border of the chart, where the curve closes, or if steps become too small.
+        """
         points, h, turns, last, width, start = [], _FIRST, _FIRST_TURNS, first.place, 1.0, along
         while len(points) < _MOST and h >= _LEAST:
             inside = _room(last, along)
