@@ -233,7 +233,7 @@ def _warnings(
 
 
 def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
-    """Yield the loci of the lowest modes at rest, separately for each uncoupled part."""
+    """Yield the frequencies over speed of the modes lowest at rest, for each uncoupled part separately."""
     solver = model.solver
     uncoupled = isinstance(solver, UncoupledSolver)
     parts = (

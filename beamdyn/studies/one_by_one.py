@@ -115,7 +115,7 @@ def _caution(
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
-    """Compute the result of one design at all speeds together; if that fails, at each speed."""
+    """Compute the result of one design at all speeds together; if that fails, speed by speed."""
     try:
         return _ANALYSES[question.what](question, with_numbers(question.scene, design), speeds)
     except _FAILURES as error:

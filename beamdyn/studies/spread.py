@@ -121,7 +121,7 @@ class SceneSpread(Spread, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the nominal design's results by each neglected effect."""
+        """Relative changes of the nominal design's results by each neglected effect."""
         return left_out_of_design(self.question, self.scene, {}) or nothing_known(self.scene)
 
 

@@ -113,7 +113,7 @@ def _largest_lines(result: Any, **window: float) -> list[Text]:
 
 
 def _lines(result: bd.SpanLoads, say: Callable[[str], str]) -> list[Text]:
-    """Return a sentence on each computed quantity, and the data that are missing for strains."""
+    """Return a sentence on each computed quantity, and, without strains, on the data that they need."""
     known = [name for name in _QUANTITIES if np.isfinite(result.values(name)).any()]
     lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
     return [*map(Text, (*map(say, reversed(known)), *lacking))]

@@ -136,7 +136,7 @@ def sensitivities_table(result: bd.Sensitivities) -> Group:
 def _rows(
     result: bd.Sensitivities, value: np.ndarray, error: np.ndarray, shown: slice
 ) -> Iterator[Sequence[str]]:
-    """Yield a row for each input, with numbers for some results."""
+    """Yield a row for each input, with numbers for the results in the range `shown`."""
     for each, numbers, errors in zip(result.inputs, value[:, shown], error[:, shown], strict=True):
         cells = map(supported, numbers, errors, [_DIGITS_OF_DERIVATIVES] * len(numbers))
         yield in_files(InputName(each.name)), f"{each.value:.6g} {each.unit}".rstrip(), *cells

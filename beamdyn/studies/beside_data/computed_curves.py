@@ -158,7 +158,7 @@ def _period(scene: Scene, data: MeasuredHistory) -> float:
 
 
 def _curves(run: Transient, names: Sequence[str]) -> Iterator[tuple[Callable[[np.ndarray], Any], float]]:
-    """Yield, for each named quantity, a function from times to its values in a transient, and its error."""
+    """Yield, for each named quantity, a function from times to values in a transient, and their error."""
     for name in names:
         k = int(name.endswith("across"))
         if name == "root strain":

@@ -104,7 +104,7 @@ def tradeoff(
     Parameters
     ----------
     scene : Scene
-        The scene; transients and the steady response are measured if it has a motion.
+        The scene; if it has a motion, transients and the steady response are timed, too.
     speed : float, optional
         Speed of the frequencies [rad/s]; by default the final speed of the motion, or 0.
     modes : int
