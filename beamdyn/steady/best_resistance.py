@@ -124,8 +124,9 @@ def best_resistance(
 ) -> BestResistance:
     """Find the load resistance of the largest mean power at a speed, by bounded search.
 
-    Resistances are tried over four decades either side of 1/(omega C), with the first natural frequency, and
-    the best is refined by Brent's method, to a relative accuracy of 1e-6.
+    Resistances are tried over four decades on either side of 1/(omega C), with the first natural frequency
+    and the capacitance of the layers.  The best is refined by Brent's method, to a relative accuracy of
+    1e-6.
 
     Parameters
     ----------

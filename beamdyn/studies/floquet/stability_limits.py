@@ -357,7 +357,7 @@ def _room(place: np.ndarray, along: np.ndarray) -> float:
 
 
 def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the border's direction at a position (2,) on the border, on the side of a normal."""
+    """Return the direction along the border at a position (2,) on it, with an acute angle to a normal."""
     on = np.minimum(place, 1 - place)
     along = np.where(np.arange(2) == on.argmin(), 0.0, np.sign(normal))
     return along if along.any() else normal
