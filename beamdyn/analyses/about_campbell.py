@@ -100,6 +100,6 @@ def parse_orders(text: str) -> Sequence[int]:
     if len(orders) < len(parts):
         raise ValueError(
             f'--per-rev = "{text}": give the highest order, e.g. "6" for 1P to 6P, one order, e.g. "2P", or '
-            'a list of orders from one on, e.g. "3, 6, 9"'
+            'a list of whole numbers above 0, e.g. "3, 6, 9"'
         )
     return orders if len(parts) > 1 else range(1, orders[0] + 1)

@@ -232,7 +232,7 @@ def _with_uncertainty(
     if isinstance(data, MeasuredCurves):
         if not share:
             raise ValueError(
-                f'--uncertainty = "{text}": give a share, "1 %", or a column "tip uncertainty [mm]"'
+                f'--uncertainty = "{text}": give a percentage, "1 %", or a column "tip uncertainty [mm]"'
             )
         sizes = np.abs(data.columns).max(axis=0)
     else:
@@ -261,10 +261,10 @@ def parse_free(text: str) -> dict[str, tuple[float, float] | None]:
     for part in filter(None, (each.strip() for each in text.split(","))):
         words = f'--free = "{part}"'
         key, _, bounds = (each.strip() for each in part.partition("="))
-        if is_speed(key):  # the name "speed": each analysis checks it separately
+        if is_speed(key):  # the analysis decides whether it accepts the name "speed"
             found[key] = None
             continue
-        of_beam = f"beam.{key}"  # a name without a table is a property of the beam without its layers
+        of_beam = f"beam.{key}"  # a name without a table means an input of [beam], not of [harvester]
         entry = known[of_beam] if of_beam in known else find_input([*known.values()], key, words)
         found[entry.path] = _bounds(bounds, entry.quantity.unit, words) if bounds else None
     if not found:

@@ -207,7 +207,7 @@ def inputs_of(scene: bd.Scene) -> list[Input]:
     """Return descriptions, as inputs of a file, of the numbers that a study may vary, and of the speed."""
 
     class ByWholeName(Input):
-        """An input that must be named by its full path: a factor, or an entry of a list."""
+        """Input named by its path without "beam.": a factor of a property along the beam, or a list entry."""
 
         @property
         def name(self) -> str:

@@ -70,7 +70,7 @@ class RandomInput:
 
     @property
     def drive(self) -> inputs_outputs.Excitation | None:
-        """Return position or direction of the input; None if not given: the density determines it."""
+        """Return the excitation in `input`; None if not given: the default depends on the density."""
         return None if self.input is None else parse_input(self.input)
 
     @property

@@ -55,7 +55,7 @@ def equilibrium(
 def branches(
     scene: bd.Scene, *, top_speed: options.PositiveSpeed, discretization: options.Discretization = "ritz"
 ) -> bd.EquilibriumBranches:
-    """Branches of equilibria over speed: where the beam buckles, and where an equilibrium turns back.
+    """Branches of equilibria over speed: where the beam buckles, and where a branch turns back (limit point).
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def critical(
     discretization: options.Discretization = "ritz",
     outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
-    """Critical speed, at which the rotating beam buckles; or why there is none, or up to which speed."""
+    """Critical speed, at which the rotating beam buckles; if none is found, the reason or a lower bound."""
     result = bd.critical_point(scene, discretization)
     # If the error is infinite, a critical speed may exist that was not found or not resolved.
     refusal = "; ".join(result.warnings) if isinf(result.error) else ""
@@ -146,7 +146,7 @@ def limits(
     discretization: options.Discretization = "ritz",
     outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
-    """Setting angles above which the first frequency stops falling with speed, and above which it only rises.
+    """Setting angles above which the first frequency rises at low speed, and above which to the top speed.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ def terms(scene: bd.Scene, *, outputs: AnswerFiles = NO_ANSWER_FILES) -> bd.Term
 
 @analysis(
     'beamdyn tradeoff examples/tyre_harvester.toml --budget "10 s" --plot t.png',
-    about_scene="The scene; transients and the steady response are measured if it has a motion.",
+    about_scene="The scene; with a motion, transients and the steady response are timed, too.",
     physics=None,
 )
 def tradeoff(
@@ -46,7 +46,7 @@ def tradeoff(
         Number of modes, from the lowest; at most 20.
     t_end
         End of the transients with its unit, e.g. "2 s"; default: a hundred periods of the first
-        mode after the spin-up, or from rest if the spin-up is long.
+        mode after the spin-up; from rest if the spin-up takes more than 900 periods.
     budget
         Approximate computing time, e.g. "60 s"; measurements that do not fit are left out and
         listed.

@@ -1,4 +1,4 @@
-"""Stability of periodic motion: Floquet multipliers of a scene, and stability charts over two numbers."""
+"""Stability of periodic motion: Floquet multipliers of a scene, and stability charts over two inputs."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _VALUES = 41  # number of amplitudes, if none are given
 Varied = Annotated[
     tuple[str, ...],
     Parameter(
-        help='A number and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; '
+        help='An input and its values, NAME=start:stop:count unit, such as "motion.frequency=100:150:51 Hz"; '
         "give the option twice. Names are those of the file, or speed. Default: the pulsation frequency, "
         "from 80 to 120 % of its value, and the amplitude, from 0 to twice its value.",
         negative="",
@@ -37,7 +37,7 @@ Varied = Annotated[
         show_default=False,
     ),
 ]
-Workers = Annotated[_Workers, Parameter(help="Number of processes; the answer is the same for any.")]
+Workers = Annotated[_Workers, Parameter(help="Number of processes; the result is the same for any number.")]
 Store = Annotated[Folder, Parameter(help="Folder for finished results; the same command resumes from there.")]
 
 
@@ -115,13 +115,13 @@ def _varied(
     if not vary:
         return scene, _about(scene), {}
     if len(vary) != 2:
-        raise ValueError(f'{OPTION}: a chart is over two numbers; give two, such as "speed=50:60:21 rad/s"')
+        raise ValueError(f'{OPTION}: a chart is over two inputs; give two, such as "speed=50:60:21 rad/s"')
     varied = (text.partition("=") for text in vary)
     scene = in_unit_of(scene, *(values for key, _, values in varied if key.strip() == SPEED))
     axes = [parse_axis(inputs_of(scene), text, OPTION) for text in vary]
     inputs = {axis.input.path: axis.values for axis in axes}
     if len(inputs) < 2:
-        raise ValueError(f"{OPTION}: {axes[0].input.path} is given twice; give two numbers")
+        raise ValueError(f"{OPTION}: {axes[0].input.path} is given twice; give two inputs")
     return scene, inputs, {axis.input.path: unit_given(axis) for axis in axes if axis.unit}
 
 
@@ -131,7 +131,7 @@ def _about(scene: bd.Scene) -> dict[str, np.ndarray]:
     there = [path for path in _AMPLITUDES if numbers[path]]
     frequency = numbers[_FREQUENCY]
     if not frequency or not there:
-        raise ValueError(f'give {OPTION} twice, such as "speed=50:60:21 rad/s": no amplitude of the motion')
+        raise ValueError(f'give {OPTION} twice, such as "speed=50:60:21 rad/s": the motion does not pulsate')
     largest = 2 * (numbers[there[0]] or 0.0)
     amplitudes = np.linspace(min(largest, 0.0), max(largest, 0.0), _VALUES)
     return {_FREQUENCY: frequency * np.linspace(0.8, 1.2, 2 * _VALUES - 1), there[0]: amplitudes}

@@ -53,13 +53,13 @@ def design(
     ----------
     free
         Names of the inputs to choose, separated by commas, each with its bounds:
-        "beam.thickness=0.1:0.3 mm, beam.length=40:60 mm"; without, from half to twice its value.
+        "beam.thickness=0.1:0.3 mm, beam.length=40:60 mm"; without bounds, from half to twice its value.
     so_that
         A wanted result; give the option once for each: the result, then =, >= or <= and a value, or largest
         or smallest. Results are "frequency 1 at 50 rad/s", of the first mode; "critical speed"; "resonance
         speed 1 with road +", of a mode and a line of the excitation; "amplitude", "peak", "strain" and
-        "power", with "at" and a speed. Without it frequencies are those at rest, and responses those at the
-        final speed.
+        "power", with "at" and a speed. Without a speed, frequencies are those at rest, and
+        responses those at the final speed of the motion.
     seed
         Seed of the random designs with which a search over several inputs begins.
     write

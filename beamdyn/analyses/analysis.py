@@ -81,7 +81,7 @@ class AsText:
         return option.replace(annotation=Annotated[str, *notes], default=default)
 
     def value(self, option: str, text: str | None, scene: Scene) -> Any:
-        """Return the value that a text means, or the value of an option that is not given."""
+        """Return the value that a text means, or, if the option is not given, its default for the scene."""
         if text is None:
             return None if self.absent is None else self.absent(scene)
         return self.read(option, text, scene)
@@ -271,7 +271,7 @@ class Analysis:
         return made if isinstance(made, Answer) else Answer(made)
 
     def _sort(self, given: Mapping[str, Any]) -> tuple[dict[str, Path], list[Path], dict[str, object]]:
-        """Sort options into output files, input files and folders, and options that a report repeats."""
+        """Return output files by option, paths in other options, and all options except output files."""
         # Values and annotations of options; options in a group are listed one by one.
         options: dict[str, tuple[Any, Any]] = {}
         for name, value in given.items():

@@ -57,7 +57,7 @@ def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
 
 
 def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = None) -> float:
-    """Read a positive number with its unit, in SI units; if a scene is given, a speed, see `parse_speed`."""
+    """Read a positive number with its unit, in SI units; with a scene, a speed as by `parse_speed`."""
     value = parse_quantity(option, text, unit) if scene is None else parse_speed(option, text, scene)
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')
@@ -77,7 +77,7 @@ def parse_speed(option: str, text: str, scene: bd.Scene | None = None) -> float:
 
 
 def parse_window(text: str, t_end: float | None = None) -> tuple[float, float]:
-    """Read start and end [s] in ``--window``, such as "20:30 s", not after the end `t_end` of the run."""
+    """Read start and end [s] in ``--window``, such as "20:30 s"; raise an error if it ends after `t_end`."""
     unit = _UNIT.search(text.strip())
     ends = text.strip()[: unit.start()].split(":") if unit else []
     if unit is None or len(ends) != 2:

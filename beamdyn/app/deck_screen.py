@@ -49,7 +49,7 @@ class DeckInput(Section):
     ] = None
     hub_radius: Annotated[
         float | None,
-        Quantity("m", symbol="r", meaning="root from axis, where the file lacks it", least=0),
+        Quantity("m", symbol="r", meaning="distance of root from axis, where the file lacks it", least=0),
     ] = None
 
 
@@ -118,7 +118,7 @@ def _scene(deck: Deck) -> str:
 
 
 def _for_screens(deck: Deck) -> str:
-    """Return the scene file with options for the screens: speeds up to half of the first frequency."""
+    """Return the scene file with options for the screens: a speed of half the first angular frequency."""
     speed = f"{first_frequency(deck.scene) / 2:.2g} rad/s"
     return f"# options.top_speed = {speed}\n# operation.speed = {speed}\n{deck.scene_text()}"
 

@@ -187,7 +187,11 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
 
 
 def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
-    """Return the highest frequency shown [Hz]: of modes not far above all lines, or of the lowest mode."""
+    """Return the upper limit of the frequency axis [Hz], a little above the highest mode shown.
+
+    Modes up to twice the highest of the lines' frequencies `ends` are shown, but at least the lowest mode;
+    without lines, all modes.
+    """
     known = [float(np.nanmax(f)) for f in frequency.T if np.isfinite(f).any()]
     fastest = max(ends, default=0.0)
     near = [f for f in known if not fastest or f <= _MOST_ABOVE * fastest]
@@ -203,7 +207,7 @@ def describe_margin(margin: Margin) -> str:
 
 
 def headline(answer: Frequencies) -> Iterator[KeyResult]:
-    """Yield the first frequency at the lowest and highest speed, the critical speed, and its margin."""
+    """Yield the first frequency at several speeds, the critical speed, and the top speed's margin from it."""
     first, top, critical = answer.locus.frequency[:, 0], float(answer.locus.speeds[-1]), answer.critical
     unit = answer.locus.display_units.speed_unit()
     for words, frequency in (("first frequency at rest", first[0]), (f"at {brief(top, unit)}", first[-1])):

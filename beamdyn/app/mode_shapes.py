@@ -32,7 +32,7 @@ def solve(tables: Mapping[str, Any]) -> Modes:
 
 
 def drawings(modes: Modes, place: float = 0.0) -> Rows:
-    """Draw each mode shape at a phase of its vibration: 0 and 2 are the extremes, 1 is zero deflection."""
+    """Draw each mode shape at a phase of its vibration: `place` 0 and 2 are extremes, 1 is undeflected."""
     if (mesh := modes.mesh(_PLACES, _ROWS)) is not None:
         return _abreast(_strips(modes, mesh, 1.0 - place))
     length, words = modes.scene.beam.length, words_of_directions(modes.scene)

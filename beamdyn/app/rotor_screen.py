@@ -26,9 +26,9 @@ def solve(tables: Mapping[str, Any]) -> RotorDrawing:
 
 
 def drawings(rotor: RotorDrawing, _: float = 0.0) -> Rows:
-    """Draw the rotor seen along its axis, beside the cross-section at the root.
+    """Draw the rotor seen along its axis, and beside it the cross-section at the root in its own scale.
 
-    If the beam is also drawn separately, it is beside the cross-section; both are detail drawings.
+    If the beam is also drawn separately in its own scale, it and the cross-section are in a second row.
     """
     (plan,), *details = rotor.drawings()
     apart = [replace(detail, own_scale=True) for (detail,) in details]

@@ -22,7 +22,7 @@ from beamdyn.files.scenes import scene_from_dict
 from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.scene.scene import Scene
 
-# Tables of the form for each screen, in this order.
+# Tables of a scene file that the form of every screen shows, in this order.
 SCENE_TABLES = ("beam", "harvester", "mount", "motion", "model", "damping", "tip_load", "physics")
 TABLES = ("options", *SCENE_TABLES)
 DRAGS = (

@@ -243,7 +243,7 @@ def _of_times(cheapest: str, time: str) -> Iterator[KeyResult]:
 
 TRADE = scene_screen(
     "Trade",
-    "The cheapest model that keeps so many digits of the natural frequencies at a speed.",
+    "The cheapest model with a given number of correct digits of the natural frequencies at a speed.",
     solve,
     ("trade", "operation", "options"),
     tables=tables,

@@ -25,10 +25,10 @@ from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harves
 from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
-_DECADES = 4.0  # decades of resistance that are tried first, either side of 1/(omega capacitance)
+_DECADES = 4.0  # decades tried first on either side of 1/(omega C): first natural frequency, capacitance
 _WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
 _DIGITS = 6  # largest number of digits of a resistance
-# Assumed ratio of the relative errors of resistance and power; at most 1 in 16 cases with 1 to 5 modes.
+# Assumed ratio of the relative errors of resistance and power; it was at most 1 in each of 16 cases.
 _LIKE_POWER = 2.0
 
 
@@ -109,7 +109,7 @@ class BestResistance(Harvest):
     plot_panels = plot
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Return width and height of the plot [inch], for a width if one is given."""
+        """Return width and height of the plot [inch], with the given width if there is one."""
         return width or _WIDTH, _HEIGHT
 
 
@@ -124,8 +124,9 @@ def best_resistance(
 ) -> BestResistance:
     """Find the load resistance of the largest mean power at a speed, by bounded search.
 
-    Resistances are tried over four decades either side of 1/(omega C), with the first natural frequency, and
-    the best is refined by Brent's method, to a relative accuracy of 1e-6.
+    Resistances are tried over four decades on either side of 1/(omega C), with the first natural frequency
+    and the capacitance of the layers.  The best is refined by Brent's method, to a relative accuracy of
+    1e-6.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from beamdyn.scene.scene import SceneResult
 
 KINDS = ("forced", "parametric")
 _STEP = 1e-4  # relative step of the speed for the slope of the frequencies
-_FURTHER_MODES = 2  # number of further modes, whose order by frequency may change with speed
+_FURTHER_MODES = 2  # number of modes solved in addition: the order of modes may change with speed
 
 
 @dataclass(frozen=True)
@@ -179,8 +179,8 @@ def left_out_of_crossings(
 ) -> LeftOutEffects:
     """Estimate relative changes of resonance speeds (k,) by each effect left out, to first order.
 
-    The relative change of a resonance speed is that of the frequency, over 1 - (speed/frequency) times the
-    slope of the frequency over speed.
+    The relative change of a resonance speed is that of the frequency divided by 1 - (v/f) df/dv, with the
+    speed v and the sum f of the frequencies that resonate.
 
     Parameters
     ----------

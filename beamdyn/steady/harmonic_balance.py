@@ -30,7 +30,7 @@ import numpy as np
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, list_harmonics, select_harmonics
 
 _MOST_ENTRIES = 10**7  # number of matrix entries in memory when equations are solved: 80 MB
-# Largest number of terms of the series; it ends without a result unless each term reduces the error 20 times.
+# Largest number of terms of the series: enough to converge if each term divides the error by 20.
 _MOST_TERMS = 12
 _SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
 # Fraction of converged pairs of phase rates above which the arrays are copied without them, to save time.
@@ -38,7 +38,9 @@ _WORTH_LEAVING_OUT = 0.25
 
 
 def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """Solve for given harmonics of the response: by a series of interactions, or else by one matrix.
+    """Solve for given harmonics of the response by a series of interactions.
+
+    At phase rates at which the series does not converge, one matrix of all harmonics is solved instead.
 
     Parameters
     ----------
@@ -163,7 +165,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     """
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
-    if system.is_free(np.array(harmonics)).any():  # such a coordinate has no compliance in the static part
+    if system.is_free(np.array(harmonics)).any():  # without stiffness there is no static compliance
         return response, settled
     try:
         mean = MeanModes.of_system(system)

@@ -76,10 +76,10 @@ class Harvest(SceneResult, JudgedByRepeating):
     amplitude : ndarray, shape (S,)
         Largest tip deflection [m].
     error : ndarray, shape (S,)
-        Estimated relative error of the power, or without a load of the voltage or current: by the harmonics
-        and the modes left out.
+        Estimated relative error of the power; in open circuit of the voltage, in short circuit of the
+        current.  It is due to the harmonics and the modes left out.
     strain_error : ndarray, shape (S,)
-        Estimated error of the strain by the modes left out.
+        Estimated absolute error of the strain, due to the modes left out.
     road : RoadHarvest, optional
         Harvest that a random road adds, where one is given.
     status : ndarray of str, shape (S,)
@@ -138,7 +138,10 @@ class Harvest(SceneResult, JudgedByRepeating):
 
     @property
     def total_error(self) -> np.ndarray:
-        """Estimated relative error of `total_power`; where the power is 0, the larger error of both parts."""
+        """Estimated relative error of `total_power`, from those of `power` and `road.power`.
+
+        Where the total power is 0, it is the larger of the two errors.
+        """
         if self.road is None:
             return self.error
         errors, powers = (self.error, self.road.error), (self.power, self.road.power)
@@ -185,7 +188,7 @@ class Harvest(SceneResult, JudgedByRepeating):
         return plot_harvest_panels(*given, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Return width and height of the plot of all panels [inch], for a width if one is given."""
+        """Return width and height of the plot of all panels [inch], with the given width, if any."""
         return panel_size(len(self._panels), width)
 
     @property
@@ -474,7 +477,7 @@ class HarvestedPowers:
         )
 
     def apart(self, other: HarvestedPowers) -> np.ndarray:
-        """Compute relative differences in power or, if power is 0, in voltage or current."""
+        """Compute relative differences in power; if the power is 0, in voltage; if that is 0, in current."""
         found = np.zeros(len(self.power))
         for name in ("current", "voltage", "power"):
             own, its = getattr(self, name), getattr(other, name)

@@ -39,7 +39,7 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
         return largest
     size = np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1)
     # Lines cross if their harmonics are not multiples of each other. The strongest line is constant along its
-    # crests, so that the lines that cross it decide there, however weak they are.
+    # crests; the lines that cross it decide where on a crest the maximum is, however weak they are.
     j, k = harmonics.T
     crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
     others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)

@@ -306,7 +306,7 @@ def expand_quantities(
 
 
 def name_line(motion: Motion, harmonic: Pair) -> Line:
-    """Make the excitation line of a harmonic (j, k), named by the motion or like "2 road - rotation"."""
+    """Return the motion's line at harmonic (j, k); without one, a line named like "2 road - rotation"."""
     multiple = abs(harmonic[0] + harmonic[1] * (motion.road_multiple or 0.0))
     for line in motion.lines:
         if abs(line.multiple - multiple) <= 1e-12 * (1 + multiple):

@@ -38,7 +38,7 @@ _HIGHEST_ORDER = 20  # highest accepted order of lines, whose search takes ten s
 _NODES = 400  # number of intervals of speed in which roots are bracketed
 # Number of intervals of speed with large deflection: an equilibrium is solved at each, and loci are smooth.
 _BENT_NODES = 100
-_FURTHER_MODES = 2  # number of further modes computed, because modes of other uncoupled parts may be lower
+_FURTHER_MODES = 2  # number of modes solved in addition: modes of other parts may become lower with speed
 
 
 @statements.announced
@@ -105,7 +105,7 @@ def resonance_speeds(
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = choose_physics(scene.undamped, [0.0, top], modes, tolerance)
     model = model_to_tolerance(scene, discretization, ends := np.array([0.0, top]), modes, tolerance)
-    sprung = discretization == "fem" and model.equations.shift  # elements may miss springs at the root
+    sprung = discretization == "fem" and model.equations.shift  # elements may not resolve springs at the root
     if sprung and not np.isfinite(solve_with_error(model, ends, modes).error).all():
         model = choose_model(scene, "ritz", ends, modes)
     critical = model.solver.critical_speed
@@ -205,10 +205,11 @@ def _warnings(
     top: float,
     critical: float,
 ) -> Iterator[statements.Statement]:
-    """Yield warnings: limits of the search, reasons for no result, and too large deflection by rotation."""
+    """Yield warnings: limits of the search, reasons for no result, and deflection beyond linear theory."""
     scene = model.scene
     if discretization == "fem" and model.discretization.order is None:
-        said = f"finite elements do not resolve the springs at the root: solved with {model.discretization}"
+        said = "finite elements do not resolve the springs at the root; "
+        said += f"{model.discretization} was used instead"
         yield statements.Statement(said, kind=statements.INPUT, quantity="discretization")
     yield from warn_of_left_out(scene)
     if top >= critical:
@@ -232,7 +233,7 @@ def _warnings(
 
 
 def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
-    """Yield the loci of the lowest modes at rest, separately for each uncoupled part."""
+    """Yield the frequencies over speed of the modes lowest at rest, for each uncoupled part separately."""
     solver = model.solver
     uncoupled = isinstance(solver, UncoupledSolver)
     parts = (
@@ -296,7 +297,7 @@ class _Loci:
             yield self._crossing(kind, line, indices, speed, slope)
 
     def count_crossings(self, line: Line, indices: tuple[int, ...]) -> int:
-        """Count the crossings of a line by sign changes over the speeds of the locus."""
+        """Count the sign changes over speed of a natural frequency, or the sum of two, minus a line."""
         if self.coincide(line, indices):
             return 0
         return int(np.count_nonzero(np.diff(self._detunings(line, indices) > 0)))
@@ -342,7 +343,10 @@ class _Loci:
         )
 
     def _error(self, speed: float, omega: np.ndarray) -> np.ndarray:
-        """Estimate the errors of angular frequencies at a speed [rad/s] from the modes of the whole beam."""
+        """Estimate the errors of angular frequencies `omega` [rad/s] at a speed, from the complete model.
+
+        That model has all coordinates, not only those of the requested modes.
+        """
         size = self.model.solver.size
         further = 0 if len(self.places) == size else _FURTHER_MODES
         most = min(int(self.numbers[-1]) + further, size)

@@ -47,7 +47,7 @@ from beamdyn.steady.vibration import (
 
 _MOST_HARMONICS = 20  # largest accepted number of interactions, whose solution takes half a minute
 _HIGHEST_SPEED = 0.99  # largest speed at which modes of a basis are computed, relative to the critical speed
-_MOST_MODES = 13  # largest number of modes of "auto", at each of two speeds
+_MOST_MODES = 13  # largest number of modes of "auto" at the slowest speed, and at the fastest
 # First number of modes tried about equilibria; not small, because equilibria are solved again for each basis.
 _FIRST_ABOUT_EQUILIBRIA = 6
 # Number of speeds at which the model error is computed, in addition to that of the largest amplitude.
@@ -351,7 +351,10 @@ class ResponseRequest(FieldsOnly):
         )
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
-        """Compute amplitudes of another scene with as many modes; more if only one has large deflection."""
+        """Compute amplitudes of another scene with as many modes.
+
+        If only one of the two scenes has large deflection, there may be more modes.
+        """
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
         if scene.physics.large_deflection != self.scene.physics.large_deflection:
@@ -380,7 +383,7 @@ class ResponseRequest(FieldsOnly):
         return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
-        """Choose the first basis: modes at slowest and fastest speed; for large deflection, at each."""
+        """Choose the first basis: modes at slowest and fastest speed; for large deflection, at each speed."""
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
@@ -409,7 +412,7 @@ def _warnings(
     error: np.ndarray,
     undecided: np.ndarray,
 ) -> Iterator[Statement]:
-    """Yield warnings about the response, from its status, vibration and errors at speeds."""
+    """Yield warnings about the response; `undecided` marks speeds at which the stability is uncertain."""
     scene, speeds, tolerance = request.scene, request.speeds, request.tolerance
     yield from validity.warn_of_left_out(scene)
     yield from warn_of_peak(scene, float(np.nanmax(vibration, initial=0.0)))

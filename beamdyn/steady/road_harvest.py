@@ -45,9 +45,10 @@ class RoadHarvest:
     deflection : ndarray, shape (S,)
         Root mean square of the tip deflection [m].
     error : ndarray, shape (S,)
-        Estimated relative error of the power, or without a load twice that of the voltage or current.
+        Estimated relative error of the power; in open circuit twice that of the voltage, in short circuit
+        twice that of the current.
     strain_error, deflection_error : ndarray, shape (S,)
-        Estimated errors of the strain, and of the deflection [m].
+        Estimated absolute errors of the strain, and of the deflection [m].
 
     Examples
     --------
@@ -122,7 +123,7 @@ def harvest_on_road(
 def _warnings(
     response: SteadyResponse, road: RoadHarvest, change: np.ndarray, missed: np.ndarray
 ) -> Iterator[str]:
-    """Yield warnings of large deflection, the omitted parametric term, and resonances missed by the road."""
+    """Yield warnings of large deflection, omitted parametric terms, and resonances without excitation."""
     speeds, reached = response.speeds, np.nan_to_num(response.amplitude + SEVERAL * road.deflection)
     yield from warn_of_deflection(reached, response.scene.beam.length, speeds)
     if change.max() > _LARGE:

@@ -39,9 +39,9 @@ _ROUNDING = 1e-9  # largest real part, over the largest |eigenvalue|, that count
 _SETTLED = 1e-6
 _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
 _MOST_OUTSIDE = 0.1  # largest share of an accepted eigenvector in the outermost harmonics
-_SAME_RATE = 0.05  # largest difference of copies of one growth rate, over the change by the resonance
+_SAME_RATE = 0.05  # growth rates this close, over their change by the resonance, are those of one exponent
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
-_OFF = 1e-4  # relative offset of the shift from an eigenvalue, at which the matrix is singular
+_OFF = 1e-4  # offset of a shift from an eigenvalue, over the largest |eigenvalue|, to avoid a singular matrix
 _SINGULAR = (
     "the equations with periodic coefficients are singular: the excitation is too strong for "
     "the beam's stiffness; check the size and the unit of each value"
@@ -128,7 +128,7 @@ def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
 def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndarray, np.ndarray]]]:
     """Build the first-order equations of free motion: constant A, and spectra c with their matrices B.
 
-    y' = (A + sum_h c_h B e^(i h.phi)) y for y = (w q, q'), with w [rad/s] so that both parts have one size.
+    y' = (A + sum_h c_h B e^(i h.phi)) y for y = (w q, q'), with w [rad/s] so that both are of similar size.
     """
     K, C, M = system.mean
     S, n = len(K), system.size

@@ -24,7 +24,7 @@ class Caution:
     Parameters
     ----------
     kind : str
-        Key of the subject, such as "a"; warnings of one kind are merged, and kinds are sorted by their keys.
+        Sort key of the subject, such as "a"; warnings with the same key are merged.
     count : int
         Number of pairs of a design and a speed that the warning concerns.
     weight : float

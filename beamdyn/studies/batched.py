@@ -286,7 +286,7 @@ def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Ca
 def stacks_of(
     designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
 ) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
-    """Return the matrices of designs in a basis and in the coarser one, the `PencilFamily`, and weights.
+    """Return matrices of designs in a basis and in its coarser basis, the `PencilFamily`, and weights.
 
     The weights interpolate the matrices of the family.
     """
@@ -370,7 +370,7 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
     two = designs.reference.physics.planes == 2
     with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
     if designs.reference.beam.point_masses:
-        # Single solutions determine whether such a beam is stiffened.
+        # Whether rotation stiffens a beam with point masses is decided design by design.
         return np.zeros(designs.count, dtype=bool)
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:

@@ -115,7 +115,7 @@ def _caution(
 
 
 def _answer(question: StudyQuestion, design: Mapping[str, float], speeds: np.ndarray) -> SpeedAnswer:
-    """Compute the result of one design at all speeds together, or one by one if that is refused."""
+    """Compute the result of one design at all speeds together; if that fails, speed by speed."""
     try:
         return _ANALYSES[question.what](question, with_numbers(question.scene, design), speeds)
     except _FAILURES as error:
@@ -200,7 +200,7 @@ def _answer_amplitude(question: StudyQuestion, scene: Scene, speeds: np.ndarray)
 
 
 def _answer_strain(question: StudyQuestion, scene: Scene, speeds: np.ndarray) -> SpeedAnswer:
-    """Find the largest strain in steady response: of a harvester's layers, or along the beam."""
+    """Find the largest strain in steady response: of piezoelectric layers, or, without any, of the beam."""
     if scene.beam.electrodes is not None:
         found = harvest(scene, np.unique(speeds), **_options_of_responses(question))
         return _at_each(speeds, found, (found.strain, found.strain_error, np.asarray(found.status)), None)

@@ -116,12 +116,12 @@ class SceneSpread(Spread, StatesModelError):
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Units of tables and columns: SI, as for brakes, unless `in_units` has set others."""
+        """Units of tables and columns: SI, unless `in_units` has set others."""
         return vars(self).get("_display_units") or SI_UNITS
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the nominal design's results by each neglected effect."""
+        """Relative changes of the nominal design's results by each neglected effect."""
         return left_out_of_design(self.question, self.scene, {}) or nothing_known(self.scene)
 
 

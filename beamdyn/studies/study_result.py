@@ -137,7 +137,7 @@ class Study(SceneResult, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the result by neglected effects, at the designs of `left_out_places` (first axis)."""
+        """Relative changes of the result by neglected effects, at designs `left_out_places` (first axis)."""
         return join_effects(
             [self.left_out_at(*place) for place in self.left_out_places], len(self.labels) or 1
         )

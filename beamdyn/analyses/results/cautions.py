@@ -58,7 +58,7 @@ def describe_left_out(result: Result) -> list[str]:
 
 
 def notes_of(result: Any) -> list[str]:
-    """Return notes for a picture or CSV file: on large deflections, or on neglected effects."""
+    """Return notes for a picture or CSV file: "with large deflection", or else on the model's limits."""
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]
@@ -81,7 +81,7 @@ def critical_label(point: bd.CriticalPoint) -> str:
 
 
 def labels_of(modes: bd.Modes) -> list[str]:
-    """Return the labels of modes, with the model error if it is large."""
+    """Return the labels of modes, with the model error if it exceeds 1 %."""
     large = modes.model_error > LARGE_MODEL_ERROR
     each = zip(modes.labels(), modes.model_error.tolist(), large.tolist(), strict=True)
     return [f"{label}, model error {say_size(error)}" if it else label for label, error, it in each]

@@ -60,7 +60,10 @@ def transient_loads_table(result: TransientLoads, window: tuple[float, float] | 
 def _table(
     result: bd.SpanLoads, title: str, case: int | None, values: Mapping[str, np.ndarray] | None = None
 ) -> Group:
-    """Make rows of stations: axial and shear forces, moments, and the largest strain and stress."""
+    """Make a table with a row per station: axial and shear forces, moments, largest strain and stress.
+
+    The loads are `values` if given, otherwise those of the case (speed) with the index `case`.
+    """
     columns = [_positions(result)]
     for name in _QUANTITIES:
         found = result.values(name)[case] if values is None else values[name]
@@ -110,7 +113,7 @@ def _largest_lines(result: Any, **window: float) -> list[Text]:
 
 
 def _lines(result: bd.SpanLoads, say: Callable[[str], str]) -> list[Text]:
-    """Return a sentence on each computed quantity, and the data that are missing for strains."""
+    """Return a sentence on each computed quantity, and, without strains, on the data that they need."""
     known = [name for name in _QUANTITIES if np.isfinite(result.values(name)).any()]
     lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
     return [*map(Text, (*map(say, reversed(known)), *lacking))]
@@ -126,7 +129,7 @@ def _say_largest(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
 
 
 def _say_component(result: bd.SpanLoads, found: bd.LargestLoad) -> str:
-    """Describe the direction of a component, or the point of the cross-section with its coordinates."""
+    """Describe the direction of a force or moment, or the point of the section of a strain or stress."""
     named = result.components(found.quantity)[found.component]
     if found.quantity not in ("strain", "stress"):
         return f"shear, {named}" if found.quantity == "force" and found.component else named
@@ -167,13 +170,13 @@ _ESTIMATE = (
 
 
 def _expected(value: float, error: float = 0.0) -> str:
-    """Format a statistical number with three digits, without a positive exponent; or "0 ± error"."""
+    """Format a statistical number with three digits, or as "0 ± error"; without a positive exponent."""
     text = supported(value, error, _DIGITS_EXPECTED)
     return f"{float(text):.0f}" if "e+" in text and "±" not in text else text
 
 
 def _say_expected(result: bd.RandomLoads, found: bd.LargestLoad) -> str:
-    """Format the largest expected value of a quantity, its parts, and the value exceeded in 1 % of cases."""
+    """Format a quantity's largest expected value, constant part, part by gravity, rms and 99 % quantile."""
     name, (scale, unit) = found.quantity, SHOWN[found.quantity]
     place = result.station_of(found), found.component
     value = _expected(scale * found.value, scale * found.error)
@@ -253,14 +256,14 @@ def _places(result: bd.SpanLoads, times: int = 1) -> tuple[Column, Column]:
 
 
 def _of_components(result: bd.SpanLoads, part: str, values: np.ndarray) -> Iterator[Column]:
-    """Yield a column for each component of all quantities, from values (rows, components)."""
+    """Yield columns of values (rows, components of all quantities); their names begin with `part`."""
     named = ((name, unit) for name, unit in UNITS.items() for name in _components(result, name))
     for (name, unit), column in zip(named, values.T, strict=True):
         yield Column(f"{part}{name}", column, unit)
 
 
 def random_loads_csv(result: bd.RandomLoads) -> Columns:
-    """Make columns with one row per station: position, and each component's largest value with its parts."""
+    """Make columns with one row per station: position, and largest value, rms, mean of each component."""
     parts = {
         "largest": lambda name: result.values(name)[0],
         "error_of_largest": lambda name: result.error_of(name)[0],

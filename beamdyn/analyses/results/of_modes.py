@@ -174,7 +174,7 @@ def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
 
 
 def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
-    """Format the frequency of a mode at speed s, or its status and growth rate.
+    """Format the frequency of a mode at speed s, or, if it is unstable, its status and growth rate.
 
     Digits smaller than the model error [Hz] are dimmed.
     """
@@ -252,8 +252,8 @@ def limits_columns(result: bd.SettingAngleLimits) -> Columns:
         Column("error", [result.error] * 2, "rad", words=None),
         Column("top_speed", [result.top_speed] * 2, "rad/s", words=None),
         title=f"Setting-angle limits up to {top}, by {result.provenance.method}",
-        note="Below the first limit the first frequency falls with speed; above it, it rises from rest. "
-        "Below the second it falls before the top speed; above it, it rises.",
+        note="Below the first limit the first frequency falls with speed from rest on; between the "
+        "limits it rises first, then falls before the top speed; above the second it rises up to that speed.",
     )
 
 

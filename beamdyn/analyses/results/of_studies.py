@@ -136,7 +136,7 @@ def sensitivities_table(result: bd.Sensitivities) -> Group:
 def _rows(
     result: bd.Sensitivities, value: np.ndarray, error: np.ndarray, shown: slice
 ) -> Iterator[Sequence[str]]:
-    """Yield a row for each input, with numbers for some results."""
+    """Yield a row for each input, with numbers for the results in the range `shown`."""
     for each, numbers, errors in zip(result.inputs, value[:, shown], error[:, shown], strict=True):
         cells = map(supported, numbers, errors, [_DIGITS_OF_DERIVATIVES] * len(numbers))
         yield in_files(InputName(each.name)), f"{each.value:.6g} {each.unit}".rstrip(), *cells
@@ -212,7 +212,7 @@ def _tradeoff_figure(result: bd.Tradeoff) -> Figure:
 
 
 def campbell_tables(result: bd.Campbell) -> Group:
-    """Make tables of crossings, margins and bounds, if there are any."""
+    """Make tables of crossings and, if there are any, of margins and of guaranteed bounds of frequencies."""
     parts = crossings_columns(result), *_margins(result), *_bounds(result)
     return Group(*(table_of(columns, result.display_units) for columns in parts))
 
@@ -223,7 +223,7 @@ def _scenes(result: bd.Campbell, labels: Sequence[str]) -> Column:
 
 
 def crossings_columns(result: bd.Campbell) -> Columns:
-    """Make columns of the crossings; tables show the energy fraction of the direction that is drawn solid."""
+    """Make columns of the crossings; tables show the energy fraction of the direction with solid curves."""
     found, number = result.crossings, len(result.crossings)
     speed, frequency, error = (
         np.array(attributes(found, name), dtype=float) for name in ("speed", "frequency", "error")
@@ -251,7 +251,7 @@ def crossings_columns(result: bd.Campbell) -> Columns:
 
 
 def _shares(result: bd.Campbell) -> Iterator[Column]:
-    """Yield columns of energy fractions of both planes; tables show the direction that is drawn solid."""
+    """Yield columns of energy fractions of both planes; tables show that of modes with solid curves."""
     scenes = [result.loci[result.labels.index(c.label)].scene for c in result.crossings]
     cells = [
         f"{c.plane_share[first_drawn(scene)]:.3f}" if scene.physics.planes == 2 else "-"

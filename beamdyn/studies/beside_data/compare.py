@@ -200,7 +200,7 @@ class _MeasuredRow:
 
     @cached_property
     def of_shapes(self) -> np.ndarray | None:
-        """Modal assurance criterion (m, n) of measured and computed modes; without shapes see `pairing`."""
+        """Modal assurance criterion (m, n) of measured and computed shapes; if none, `likeness_of_kinds`."""
         data, modes = self.data, self.modes
         if data.shapes is None:
             return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))

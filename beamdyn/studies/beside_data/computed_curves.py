@@ -26,7 +26,7 @@ from beamdyn.transient.sweep import Sweep, sweep
 _DELAYS = 33  # number of trial delays, evenly spaced between the limits
 _COMPARED = 4000  # largest number of instants at which histories are compared to find the delay
 _ROUNDING = 1e-9  # fraction of the length by which a position may be beyond the tip because of rounding
-_SHARP = 1e-9  # accuracy of a delay, relative to the period
+_SHARP = 1e-9  # accuracy of a delay, relative to the period of the first mode
 # A curve counts as inverted if the opposite sign reduces the sum of squares to at most this fraction.
 _TURNED = 0.25
 _LOADS = {
@@ -160,7 +160,7 @@ def _period(scene: Scene, data: MeasuredHistory) -> float:
 
 
 def _curves(run: Transient, names: Sequence[str]) -> Iterator[tuple[Callable[[np.ndarray], Any], float]]:
-    """Yield, for each named quantity, a function from times to its values in a transient, and its error."""
+    """Yield, for each named quantity, a function from times to values in a transient, and their error."""
     for name in names:
         k = int(name.endswith("across"))
         if name == "root strain":
@@ -184,7 +184,7 @@ def _delay(
 ) -> float:
     """Find the delay [s], between two limits, for which the computed curves agree best with measured ones.
 
-    If the curves with opposite sign agree far better, their delay is returned.
+    If opposite signs of curves reduce the sum of squares to less than a quarter, their delay is returned.
     """
     some = slice(None, None, 1 + len(data.time) // _COMPARED)
     t, values = data.time[some], data.value[some]

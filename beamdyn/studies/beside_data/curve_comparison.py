@@ -119,17 +119,17 @@ class CurveComparison(SceneResult):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Largest measured minus largest computed value, over the computed one; inf for 0."""
+        """Largest measured minus largest computed value, divided by the latter; inf if only that is 0."""
         return _over(self.peak - self.computed_peak, self.computed_peak)
 
     @property
     def rms(self) -> np.ndarray:
-        """Root mean square of the difference, over that of the computed curve."""
+        """Root mean square of the difference, divided by that of the computed curve."""
         return _over(_rms(self.measured - self.computed), _rms(self.computed))
 
     @property
     def is_turned(self) -> np.ndarray:
-        """Whether each measured curve fits the computed one of opposite sign far better."""
+        """Whether a measured curve of opposite sign has less than half the root mean square difference."""
         return self.rms_turned < _TURNED * self.rms
 
     @property
@@ -215,7 +215,7 @@ class CurveComparison(SceneResult):
         return f"; its sign is opposite: with the other sign the whole curve differs by {left}"
 
     def _shifted(self, k: int) -> str:
-        """State how far computed curve k leads or lags; empty text if both are in phase."""
+        """State how far measured curve k leads or lags the computed one; empty text if they are in phase."""
         phase = float(np.degrees(self.phase[k]))
         if not abs(phase) > _IN_PHASE:  # this form of the condition treats nan as in phase
             return ""

@@ -109,7 +109,7 @@ class Fitting:
 
     @property
     def flat(self) -> float:
-        """Gradient of the sum of squares that counts as 0: the tolerance over squared relative weights."""
+        """Gradient of the sum of squares that counts as 0: tolerance times median (frequency/weight)^2."""
         return self.tolerance * float(np.nanmedian((self.data.frequency / self.weight) ** 2))
 
     @property

@@ -26,7 +26,7 @@ _CLAMPED = 1e-5  # relative compliance below which the root counts as clamped
 _FIRST = 0.1  # start value of the variable of a spring or body that the scene does not have
 _SOFTEST = 1e3
 _TIMES = 10.0  # a number is searched between a tenth of its value and ten times its value
-_TURN = math.pi / 2  # an angle is searched within 90 degrees on either side
+_TURN = math.pi / 2  # an angle is searched within 90 degrees on either side of its value
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeN
         bound = "give the numbers that are unknown, by their names"
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": None}')
     if speed := next((path for path in free if isinstance(path, str) and is_speed(path)), ""):
-        bound = "the speeds are those of the data, and no unknown numbers"
+        bound = "the data state the speeds at which their frequencies were measured"
         raise InvalidValue("free", speed, bound, "leave it out, and give the data their speeds")
     paths = [check_path("free", path) for path in free]
     made = numbers_of(opened(scene, paths), paths, "free")

@@ -26,7 +26,7 @@ AGREES, LEFT_OUT, OUTSIDE, ALONE = "agrees", "within the model error", "outside"
 NOTHING = 1e-9  # relative change too small to be mentioned
 _DIGITS = 6  # number of significant digits of frequencies in sentences
 _PLACES = 61  # number of speeds at which a plot draws computed frequencies
-_ONE_SPEED = 0.1  # top speed of a plot of data at rest, over the lowest angular frequency
+_ONE_SPEED = 0.1  # top speed of a plot of data at rest, as a fraction of the first angular frequency
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class FrequencyComparison(SceneResult):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Relative deviation of each value: measured minus computed, over the computed one."""
+        """Relative deviation of each value: measured minus computed, divided by the computed one."""
         return self.measured / self.computed - 1
 
     @property

@@ -236,7 +236,7 @@ class _Told:
         if self._is_poor:
             said = f"deviations are {self._poorness:.2g} times the uncertainties of the data"
             yield Statement(
-                f"{said}: the scene does not fit, and the intervals do not include the effect of that",
+                f"{said}: the scene does not fit the data, which the intervals do not allow for",
                 kind=LIMITS,
             )
         if not self.known and self._freedom <= 0:

@@ -83,7 +83,7 @@ class Information:
 
     @property
     def leverage(self) -> np.ndarray:
-        """Leverage of each value in its own fit: the diagonal of the hat matrix."""
+        """Leverage of each measured value in the fit: the diagonal of the hat matrix."""
         U, s, _ = self._parts
         return (U[:, s > _BOUND] ** 2).sum(axis=1)
 

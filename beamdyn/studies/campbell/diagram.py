@@ -117,7 +117,7 @@ class Campbell(SceneResult, StatesModelError):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Changes of the speed of each crossing by neglected effects: a value per crossing."""
+        """Relative changes of the speed of each crossing by neglected effects: a value per crossing."""
         effects, sizes = [], []
         for label, locus in zip(self.labels, self.loci, strict=True):
             own = [c for c in self.crossings if c.label == label]

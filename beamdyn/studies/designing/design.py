@@ -25,7 +25,7 @@ from beamdyn.studies.designing.search import DIFFERENCE, Ranges, Search, Spent
 from beamdyn.studies.designing.target import Target
 
 MOST_NUMBERS = 6
-_SAME = 1e-9  # difference or slope of logarithms below which the value counts as 0
+_SAME = 1e-9  # difference or slope of logarithms below which it counts as 0
 _AT = 1e-6  # fraction of a range, or relative distance from a limit, below which a design is at the limit
 
 
@@ -121,7 +121,7 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
         raise InvalidValue("targets", targets, "give targets in a list", remedy)
     assert isinstance(targets, list | tuple)
     if sum(each.best is not None for each in targets) > 1:
-        bound = "only one answer can be the largest or smallest"
+        bound = "only one result can be the largest or smallest"
         raise InvalidValue("targets", [each.says for each in targets], bound, "give limits to the others")
     return tuple(targets)
 
@@ -153,7 +153,7 @@ class _BestDesign:
         return rounded
 
     def _is_idle(self, k: int) -> bool:
-        """Return whether no result changes when number k is moved to its farther bound."""
+        """Return whether no result changes when number k moves to the bound farther from its value."""
         far = self.x.copy()
         far[k] = 0.0 if self.x[k] > 0.5 else 1.0
         with suppress(Spent):

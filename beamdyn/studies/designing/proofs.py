@@ -43,7 +43,7 @@ class _RuledOut(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """Logarithms of the smallest and largest factor between two designs' results, by target or bounds."""
+    """Logarithms of the smallest and largest factor between two designs' results; `says` names the limit."""
 
     says: str
     least: float
@@ -97,7 +97,7 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Sign (1, -1 or 0) of each target's change as each number increases; None if not known."""
+        """Sign (1, -1 or 0) of the change of each target's result with each number; None if not known."""
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
@@ -108,7 +108,7 @@ class Proofs:
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """Return the sign of each number's change that brings a result nearer to target k, if known."""
+        """Return the sign of change of each number that brings a result nearer to target k; None if unknown."""
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 

@@ -295,7 +295,10 @@ class Search:
                 return
 
     def _descend(self, starts: np.ndarray) -> None:
-        """Minimize from several designs: the objective subject to the targets, or otherwise their miss."""
+        """Minimize the objective, subject to the targets, from several designs.
+
+        As long as no design meets the targets, their miss is minimized, too.
+        """
         for start in starts:
             if self._is_found:
                 return

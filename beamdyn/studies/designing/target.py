@@ -91,7 +91,7 @@ class Target:
             check_window(self.window)
         checks.kind("line", self.line, str)
         if (self.what == "crossings") != bool(self.line):
-            bound = "a crossing is where a mode meets a line, and no other answer has one"
+            bound = "crossings need the excitation line that a mode meets, and no other result has one"
             raise checks.InvalidValue("line", self.line, bound, 'give crossings one, such as "road -"')
 
     @property

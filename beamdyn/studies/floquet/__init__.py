@@ -1,1 +1,1 @@
-"""Stability of the beam in periodic motion, by Floquet theory: single points, and charts over two numbers."""
+"""Stability of the beam in periodic motion, by Floquet theory: single scenes, and charts over two numbers."""

@@ -233,7 +233,10 @@ def _fine_enough(B: np.ndarray) -> np.ndarray | None:
 
 
 def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
-    """Return a number of periods whose ends sample the slower phase all around, and the harmonics there."""
+    """Return a number of periods whose ends sample the slower phase all around, and harmonics at the ends.
+
+    The harmonics -most to most are in columns; the slower phase advances by `alpha` [rad] in each period.
+    """
     count = min(3 * (2 * most + 1), _PERIODS)
     while True:
         basis = np.exp(1j * np.outer(alpha * np.arange(count), np.arange(-most, most + 1)))

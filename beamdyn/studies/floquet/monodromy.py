@@ -91,13 +91,13 @@ def period_of(scene: Scene) -> Period:
 
 
 def _is_fraction(ratio: float) -> bool:
-    """Return whether a ratio is a fraction of two small whole numbers, within rounding."""
+    """Return whether a ratio is, within rounding, a fraction with numerator <= 4096 and denominator <= 64."""
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     return abs(found - Fraction(ratio)) <= _COMMENSURATE * ratio and found.numerator <= _MOST_OTHERS
 
 
 def _fraction(rate: float, first: float) -> Fraction:
-    """Return the ratio of two frequencies as a fraction; raise an error unless it has small whole numbers."""
+    """Return the ratio of two frequencies as a fraction; raise an error unless `_is_fraction`."""
     ratio = rate / first
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     nearest = min(max(found, Fraction(1, MOST_TURNS)), Fraction(_MOST_OTHERS))
@@ -184,9 +184,9 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
 
 
 def _scale(equations: Equations, period: float) -> np.ndarray:
-    """Return factors of the state: for displacements a frequency, at rest or of the period; else 1.
+    """Return factors of the state (q, q'): for q the frequency at rest, or 2 pi/period where it is 0; for q' 1.
 
-    That at rest is within rounding of 0 for a beam that turns freely about its root.
+    Rounding gives the free turn of a hinged beam a tiny frequency, which counts as 0.
     """
     frequency, turning = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"]))), 2 * math.pi / period
     frequency = np.where(frequency > _SLOWEST * turning, frequency, turning)

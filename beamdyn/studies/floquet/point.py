@@ -100,7 +100,7 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
 
     @property
     def spectral_radius(self) -> float:
-        """Growth factor of free vibration over a period: from the largest multiplier or the growth rate."""
+        """Growth factor of free vibration over a period: by multipliers or, without any, the growth rate."""
         known = self.method == MULTIPLIERS
         return float(np.abs(self.multipliers[0])) if known else math.exp(self.growth_rate * self.period)
 
@@ -121,7 +121,7 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
         return np.array(found.spectral_radius)
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Draw the multipliers and the unit circle in the complex plane, or the exponent with its error."""
+        """Draw the multipliers and the unit circle in the complex plane; without any, the exponent."""
         if self.method == EXPONENT:
             return plot_exponent(self.growth_rate, self.growth_rate_error, ax)
         return plot_multipliers(self.multipliers, self.multiplier_errors, self.krein_sign, ax)

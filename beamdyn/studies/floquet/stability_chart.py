@@ -116,7 +116,7 @@ class StabilityChart(SceneResult, JudgedByRepeating):
 
     @property
     def _few(self) -> list[np.ndarray]:
-        """Indices along each number at which the model error is computed."""
+        """Indices of those values of each number at which the model error is computed."""
         return [evenly_spread(len(each.values), _JUDGED) for each in self.inputs]
 
     def judged(self, found: StabilityChart) -> np.ndarray:
@@ -323,7 +323,10 @@ class _Grid:
         return [each for k in sorted(found) for each in found[k]]
 
     def _sets_the_period(self, place: int) -> bool:
-        """Return whether the period is inverse to an input, whose reciprocal is then a smoother variable."""
+        """Return whether the period is inversely proportional to the input with the index `place`.
+
+        The reciprocal of such an input is a smoother variable.
+        """
         first, values = self.numbers(0), self.inputs[place].values
         ends = [{**first, self.inputs[place].name: float(values[k])} for k in (0, -1)]
         periods = np.array([period_of(self.scenes.at(end)).time for end in ends])

@@ -192,7 +192,7 @@ _SLACK = 0.5  # fraction of a cell by which a polygonal curve may miss an edge t
 class LimitPoint(NamedTuple):
     """Point of a stability limit in the chart.
 
-    Position (2,) as fractions of the ranges of the two numbers, its error in the same unit, and the Floquet
+    Position (2,) as fractions of the ranges of the two varied numbers, its error likewise, and the Floquet
     multiplier that leaves the unit circle there.
     """
 
@@ -290,7 +290,10 @@ class LimitTracer:
         return self._point(low + x * (high - low), (high - low) / np.linalg.norm(high - low))
 
     def _trace(self, first: LimitPoint, along: np.ndarray, side: float) -> list[LimitPoint]:
-        """Trace a limit from a point until the chart ends, the curve closes, or steps become too small."""
+        """Trace a limit from a point; unstable motion is to the left (side 1) or right (-1) of `along`.
+
+        The trace ends at the border of the chart, where the curve closes, or if steps become too small.
+        """
         points, h, turns, last, width, start = [], _FIRST, _FIRST_TURNS, first.place, 1.0, along
         while len(points) < _MOST and h >= _LEAST:
             inside = _room(last, along)
@@ -354,7 +357,7 @@ def _room(place: np.ndarray, along: np.ndarray) -> float:
 
 
 def _within_border(place: np.ndarray, normal: np.ndarray) -> np.ndarray:
-    """Return the border's direction at a position (2,) on the border, on the side of a normal."""
+    """Return the direction along the border at a position (2,) on it, with an acute angle to a normal."""
     on = np.minimum(place, 1 - place)
     along = np.where(np.arange(2) == on.argmin(), 0.0, np.sign(normal))
     return along if along.any() else normal

@@ -61,9 +61,10 @@ class Nearby(Generic[Evaluated]):
 def evaluate_nearby(
     number: SceneNumber, evaluate: Callable[[float], Evaluated]
 ) -> Iterator[Nearby[Evaluated]]:
-    """Evaluate matrices near a number, in the widest interval that is not refused, then in narrower ones.
+    """Evaluate matrices near a number, in the widest interval of valid values, then in narrower ones.
 
-    If the values on one side are always refused, only the other side is used.
+    Values are refused if `evaluate` raises an `InvalidValue`; if those on one side always are, only the other
+    side is used.
 
     Parameters
     ----------

@@ -166,7 +166,7 @@ def _matters(scene: Scene, path: str, value: float) -> bool:
 
 
 def _number(scene: Scene, path: str, value: float) -> SceneNumber:
-    """Build the number of a path, with a step of 1 % of its value, or of the beam's size if larger."""
+    """Build the number of a path, with a step of 1 % of its value, or of a typical size if larger."""
     unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
     if unit == "rad" or path == "beam.poissons_ratio":
         return SceneNumber(path, unit, value, _STEP)

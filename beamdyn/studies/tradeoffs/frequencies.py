@@ -206,7 +206,7 @@ def _full_call(scene: Scene, speeds: np.ndarray, modes: int, tolerance: float) -
 
 AS_GIVEN, ALL = "as given", "all of these"
 _FUNCTIONS = (1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20)
-_NOTHING = 1e-10  # relative change of the frequencies below which an effect is not measured
+_NOTHING = 1e-10  # relative change of the frequencies below which an effect is left out of the comparison
 # Fraction of the model error below which more physics must reduce it to count as an improvement.
 _BETTER = 0.5
 _COMPARED = (STRETCH.name,)  # effects that are modelled only for comparison with papers

@@ -38,7 +38,7 @@ _INSTANTS = 20_001  # number of times at which tip deflections are compared
 AT_REST, AT_ENDS = "modes at rest", "modes at the slowest and the fastest speed"
 _MODES = tuple(range(1, 11))
 _MODES_AT_ENDS = (1, 2, 3, 4, 6)
-_ALL_MODES = 8  # number of modes of the reference, at each of two speeds
+_ALL_MODES = 8  # number of modes of the reference at the slowest speed, and at the fastest
 _MODES_TOLERANCE = 1e-7
 _ERROR_OF = f"the tip deflection, largest at {_INSTANTS} times, over the largest deflection"
 _TIGHT = f"{OURS} with a tolerance of {_TIGHTEST:g}"
@@ -83,7 +83,7 @@ def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: floa
 
 @one_blas_thread()
 def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> Diagram:
-    """Measure error against time of a transient over the number of modes, at rest or at two speeds.
+    """Measure error against time of a transient over the number of modes: those at rest, or at two speeds.
 
     Parameters
     ----------

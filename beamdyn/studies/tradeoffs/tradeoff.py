@@ -29,7 +29,7 @@ from beamdyn.studies.tradeoffs.measurements import Diagram
 # Largest number of modes that the references resolve, even with as many modes of a second plane.
 MOST_MODES = 20
 LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # limits of the time budget [s]
-_REMEDY = "measure fewer: their times show how the time grows with their number"
+_REMEDY = "compare fewer modes: the times show how the time grows with their number"
 _DEFAULT_PERIODS = 100  # default length of a transient after its start, in periods of the first mode
 _LONGEST_START = 900  # longest start, in periods of the first mode, that a default transient includes
 _LOCUS, _STEADY = 101, 50  # number of speeds of the locus, and of the steady response
@@ -104,14 +104,14 @@ def tradeoff(
     Parameters
     ----------
     scene : Scene
-        The scene; transients and the steady response are measured if it has a motion.
+        The scene; if it has a motion, transients and the steady response are timed, too.
     speed : float, optional
         Speed of the frequencies [rad/s]; by default the final speed of the motion, or 0.
     modes : int
         Number of modes, from 1 to 20.
     t_end : float, optional
         End of the transients [s]; by default a hundred periods of the first mode after the speed has become
-        steady, or from the start if that takes too long.
+        steady, or from the start if that takes more than 900 periods.
     budget : float
         Approximate time for all measurements [s]; the diagrams name the settings that did not fit.
     progress : callable, optional
@@ -171,7 +171,10 @@ def _check_budget(budget: float) -> float:
 
 
 def _end(scene: Scene) -> float:
-    """Return the default end [s]: 100 periods of the first mode, after a start that is not too long."""
+    """Return the default end of transients [s]: a hundred periods of the first mode after the start-up.
+
+    A start-up of more than 900 periods is not included, and the end is not after that of the motion.
+    """
     assert scene.motion is not None
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
     period = 2 * pi / float(np.abs(model.solver.eigenvalues(np.zeros(1), 1)[0, 0]))
