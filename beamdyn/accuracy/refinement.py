@@ -14,7 +14,9 @@ import numpy as np
 
 
 class ErrorMargin(NamedTuple):
-    """Safety factor between the difference of two results, or a tolerance, and the stated error.
+    """Safety factor by which the difference of two results is multiplied to state an error.
+
+    `EFFECTS` is the factor on a tolerance that limits the size of neglected effects.
 
     Parameters
     ----------
@@ -61,7 +63,7 @@ BASES_OF_PLATES = ErrorMargin(
 LINEAR_MESHES = ErrorMargin(
     2.0,
     "responses and poles of two discretizations",
-    "they converge as fast as the frequencies, but peaks magnify errors of frequency",
+    "responses converge as fast as the frequencies, but peaks magnify errors of frequency",
     "responses",
 )
 LINEAR_MODES = ErrorMargin(
@@ -103,7 +105,7 @@ EFFECTS = ErrorMargin(
 
 THREE_DISCRETIZATIONS = ErrorMargin(
     4.0,
-    "changes of poles, limits of the setting angle and coefficients of amplitude",
+    "poles, limits of the setting angle, and coefficients of backbone curves, of three discretizations",
     "the rate of convergence varies from one discretization to the next",
     "stated_answer_errors",
 )

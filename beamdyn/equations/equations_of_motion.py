@@ -206,7 +206,10 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates; plus twist for unknown width."""
+        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates.
+
+        If the width is unknown, it is the deflection of the axis plus the twist [rad].
+        """
         values = self.tip.copy()
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -238,7 +241,7 @@ class Equations:
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Collect a vector over all coordinates from those of trial functions; 0 for the other direction."""
+        """Transform a quantity of the trial functions in one direction to the coordinates; 0 for others."""
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
             if deflection.direction == direction:

@@ -268,7 +268,7 @@ def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
     """Compute the load of an excitation; refuse a direction fixed in space: the input matrix would vary."""
     drives = model.drives(excitation)
     bound = "on the rotating beam it acts at its frequency plus and minus the speed: no constant matrix"
-    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response has it'
+    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts it'
     refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
     return drives[0]
 

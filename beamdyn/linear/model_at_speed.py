@@ -209,7 +209,7 @@ class ModelAtSpeed(FieldsOnly):
         return pencil.K0 + self.speed**2 * pencil.K2
 
     def _check_direction(self, name: str, direction: int) -> None:
-        bound = "in the direction across, a beam of one plane is rigid"
+        bound = "a beam modelled in one plane is rigid across its direction of bending"
         remedy = Words("give ", Setting("physics", planes=2))
         if direction >= self.equations.planes:
             raise InvalidValue(name, "across", bound, remedy)
@@ -323,8 +323,9 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
-# Relative distance between poles of two coarser models up to which they converge, and least used ratio of two
-# distances: several fields, segments or elements do not converge as steadily as one.
+# Distance between a pole of the two coarser models, relative to the pole, above which it is not used; and the
+# least assumed ratio of the distance between the two finer models to it: several fields, segments or elements
+# do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 

@@ -283,7 +283,7 @@ def _frequencies(
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return spectra.frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
-    # Without a resonance, because all modes are overdamped.
+    # If all modes are overdamped, the sizes of their poles replace the resonances.
     lowest = resonances if len(resonances) else np.abs(poles) / _TURN
     top = 10 * float(lowest.min())
     bottom, about = top / 10**_DECADES, spectra.about_resonances(poles)

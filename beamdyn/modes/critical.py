@@ -57,7 +57,7 @@ _BENT = Words(
     " finds where its equilibrium turns back",
 )
 _LOST = "the beam that {} has no stiffness against a further bend or twist"
-_KEPT = "the beam that {} was followed so far, and stays stable"
+_KEPT = "the beam that {} was followed up to the largest speed tried, and stays stable"
 # Number of functions of a model that only determines whether rotation loads the beam transversely.
 _FUNCTIONS = 5
 
@@ -356,7 +356,7 @@ def _warnings(
     """Yield warnings about a critical speed that was found, or about a search without result."""
     yield from warn_of_left_out(scene)
     if discretization == "fem" and found.model.discretization.order is None:
-        said = f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
+        said = f"finite elements do not resolve the critical speed; {found.model.discretization} is used"
         yield Statement(said, kind=INPUT, quantity="discretization")
     if np.isinf(found.speed):
         unknown = "whether there is a critical speed is unknown"

@@ -223,6 +223,6 @@ def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[
     if not deflection <= LARGE_DEFLECTION:
         text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
         known = "" if np.isnan(deflection) else text
-        said = f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}"
+        said = f"at the limits, rotation bends the beam statically, and they are {OUTSIDE}{known}"
         about = {"quantity": "static tip deflection over the length", "value": deflection}
         yield Statement(said, kind=OUTSIDE, limit=LARGE_DEFLECTION, **about)

@@ -72,9 +72,9 @@ class BeamInSpace(FieldsOnly):
         Mean squared distance i^2 of the fibres from the axis [m2]; 0 neglects the shortening by twist.
     pretwist : ndarray, shape (N,)
         Pretwist t of the unloaded sections relative to the axes of the strains [1/m].
-    kinks : ndarray, shape (kinks, 4)
-        Unit quaternions of the axes' rotation at the beginning of each cell; needed if the beam's axis has
-        kinks, or does not begin along e1.
+    kinks : ndarray, shape (cells, 4)
+        Unit quaternions of the axes' rotation at the beginning of each cell of the quadrature; needed if the
+        beam's axis has kinks, or does not begin along e1.
     hinges : ndarray, shape (coordinates, 3), optional
         Rotation vector of the root per unit of each coordinate [rad]; None if the root is clamped.
     slopes : ndarray, shape (coordinates, sections), optional
@@ -110,9 +110,10 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def angles(self) -> np.ndarray:
-        """Measure of shape changes per unit of each coordinate: strains integrated from the root.
+        """Integrals of the strains from the root per unit of each coordinate, which measure shape changes.
 
-        The columns are the components of strain that are not 0, at each Gauss point and at the tip.
+        The columns are the components of strain that are not 0, at each Gauss point and at the tip; of a beam
+        that bends in one plane, they are its slopes, if these are known.
         """
         if self.is_planar and self.slopes is not None:
             return self.slopes
@@ -276,12 +277,15 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _root(self) -> BentBeam:
-        """Arc that models the sprung root, at these coordinates; its end is the beam's root."""
+        """Deformed piece of beam that models the root's spring, up to the root: see `BeamInSpace.arc`."""
         return self.beam.arc.at(self.q)
 
     @cached_property
     def _mean_of_arc(self) -> np.ndarray:
-        """Mean rotation matrix (..., 3, 3) along the arc: angular velocity per rotation vector's rate."""
+        """Mean rotation matrix (..., 3, 3) along the arc.
+
+        It turns the rate of the root's rotation vector into the root's angular velocity.
+        """
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:

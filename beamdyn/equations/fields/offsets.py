@@ -152,7 +152,7 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Differentiate the mass centre's displacement with respect to both rotations: (3, 4) as `beside`."""
+    """Differentiate the mass centre's displacement by the two motions, both rotations: (3, 4) as `beside`."""
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
@@ -461,8 +461,9 @@ class Offsets:
                 yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
     def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
-        """Yield, by quantity of root motion, offsets' coefficients in the work on a motion, and powers of x.
+        """Yield the work of each quantity of root motion on a unit motion: quantity, coefficients, power.
 
+        The work is mass times x^power times the sum of four coefficients times the offsets c1, c2, t1, t2.
         The work of the axial force, which acts at the centre of tension, is a separate load.
         """
         of_mass = motion.beside * np.array([1.0, 1.0, 0.0, 0.0])

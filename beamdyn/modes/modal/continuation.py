@@ -324,7 +324,7 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
         # Convergence is at least linear: the next change is at most size**2 / last.
         ends = size < _CONVERGED or (size < _STALLED and size > last / 4)
         if ends or size**2 < _CONVERGED * last:
-            return q, p, iteration + (not ends)  # the omitted iteration counts for the step size
+            return q, p, iteration + (not ends)  # counts the omitted last one, as the step size depends on it
         last = size
     raise NotConverged
 

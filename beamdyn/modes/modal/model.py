@@ -86,7 +86,7 @@ class Model(FieldsOnly):
 
     def _in_functions_of(self, beam: Beam) -> Equations:
         """Build the equations of motion of the straight beam in the functions for a similar beam."""
-        if self.scene.chooses_physics:  # other scenes have been checked: a curved axis needs other equations
+        if self.scene.chooses_physics:  # only "auto" is not checked yet: a curved axis needs other equations
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
@@ -266,7 +266,7 @@ def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -
     """Yield a warning at speeds at which the straight beam is unstable, if rotation bends it before that."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
-        end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
+        end = f" the straight beam is unstable; rotation bends it at lower speeds: the answer is {OUTSIDE}"
         yield Statement("at ", list_speeds(speeds, lost), end, kind=OUTSIDE)
 
 

@@ -227,7 +227,7 @@ class BaseEquations:
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 
     def suited_to(self, extended: Scene, modes: int) -> BaseEquations:
-        """Return equations over function spaces that resolve an effect of the extended scene in modes.
+        """Return equations over function spaces that resolve the extended scene's effect on `modes` modes.
 
         The clamp hinders camber near the root, so that the scene with camber has breakpoints there.
         """
