@@ -1,6 +1,6 @@
 """Physical effects beyond the Euler-Bernoulli beam: how to include each, and what is assumed without it.
 
-Messages name the two directions in which the beam bends at the root.
+The two directions in which a beam bends at the root are named here too.
 """
 
 from __future__ import annotations

@@ -26,11 +26,11 @@ from beamdyn.equations.root_motion import Quantity, RootMotion, root_at_unit_spe
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 
-# The rounding errors of eigenvalues were fitted to 720 frequencies of random scenes by
+# Both constants are fitted to the rounding errors of 720 frequencies of random scenes, computed by
 # benchmarks/stated_frequency_errors.py.  As rows and columns of the matrices have very different sizes, the
-# errors are smaller than the norms suggest.
+# errors are smaller than the norms of the matrices suggest.
 BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative to the sum of its terms
-# Number of functions above which measured rounding errors grow in proportion to the number of functions.
+# Number of functions above which rounding errors grow in proportion to the number of functions.
 ROUNDING_SIZE = 40
 
 

@@ -314,7 +314,7 @@ def _derivative(u: Any, order: int) -> Any:
     return u.grad[0] if order == 1 else u.hess[0][0]
 
 
-# Products of derivatives of the orders of rows and columns: scikit-fem passes the columns first.
+# Products of derivatives, by the orders for rows and for columns; scikit-fem passes the columns first.
 _PRODUCTS = {
     (a, b): BilinearForm(lambda u, v, w, a=a, b=b: w.weight * _derivative(u, b) * _derivative(v, a))
     for a in range(3)

@@ -66,7 +66,7 @@ _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
 _ORDERS |= {"torsion_stiffness": 1, "warping_stiffness": 2}
 _TURNING = ("torsion_stiffness", "warping_stiffness")  # stiffnesses against turns about the beam
 _SCALAR = ("axial_stiffness", *_TURNING)  # stiffnesses without a direction
-# For each stiffness, the stiffnesses against the displacements whose inertial forces load it.
+# By stiffness: displacements, named by the stiffness against each, whose inertia strains the beam against it.
 _COUPLED = {
     "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
     "shear_stiffness": ("bending_stiffness", "shear_stiffness"),
@@ -259,8 +259,8 @@ def _build_forces(
     forces.
     """
     beam, parts, causes = spaces.beam, spaces.polynomials, []
-    # Inertial loads: the stiffness that resists the displacement, the derivative order of the displacement,
-    # and the weight.
+    # Causes of forces: the stiffness that resists a displacement, the order of the displacement's derivative,
+    # and the weight that multiplies the derivative.
     mass, tension = spaces.inertia_and_pull(stiffness)
     for name in _COUPLED[stiffness]:
         if name in spaces.compliance:

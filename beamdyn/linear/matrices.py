@@ -70,7 +70,7 @@ class Matrices(SceneResult, StatesModelError):
     coordinates, rows : tuple of str
         Meaning of each coordinate q and each equation, with units.
     error : ndarray, shape (2 n,)
-        Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
+        Estimated relative error of each of the `poles`, in their order, due to the modes left out and the
         discretization; nan for an infinite pole, inf for one that is not resolved to 1 %.
     warnings : tuple of str
         Warnings about the validity and accuracy of the matrices.

@@ -52,7 +52,7 @@ class RandomResponse(SceneResult, JudgedByRepeating):
     rms : float
         Root mean square of the response over all frequencies [unit of the output].
     rms_error : float
-        Estimated error of `rms`, by the modes left out and the discretization [same unit].
+        Estimated error of `rms`, due to the modes left out and the discretization [same unit].
     frequencies : ndarray, shape (F,)
         Frequencies of the response [Hz].
     psd : ndarray, shape (F,)

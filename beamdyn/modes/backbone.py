@@ -221,7 +221,7 @@ class FreeVibration:
         return cls(state, speed, frequency, v * state.of.beam.stations.length / size)
 
     def coefficient(self, small: float) -> float:
-        """Compute the relative frequency change over the squared relative amplitude, for amplitude 0.
+        """Compute the relative frequency change over the squared relative amplitude, as this goes to 0.
 
         It is extrapolated from the relative amplitudes `small` and half of that.
         """

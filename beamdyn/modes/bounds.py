@@ -209,7 +209,7 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
-    tip, unit = beam.tip or TipMass(0.0), m * length  # unit of mass: a uniform beam
+    tip, unit = beam.tip or TipMass(0.0), m * length  # unit of mass: beam with the root's section
     moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     tip = TipMass(tip.mass / unit, tip.offset / length, *(j / (unit * length**2) for j in moments))
     xi, lumped = (values.tolist() for values in beam.lumps)

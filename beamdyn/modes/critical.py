@@ -180,8 +180,8 @@ def critical_point(
 
     If rotation bends the beam in space at every speed, the critical speed is the one at which the
     equilibrium, continued from rest, loses stability: a deep section buckles sideways, or the equilibrium
-    branch turns back.  The same holds with a tip load of fixed direction; a load that may cause flutter is
-    refused.
+    branch turns back (limit point).  The same holds with a tip load of fixed direction; a load that may cause
+    flutter is refused.
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def _refuse_without_potential(scene: Scene) -> None:
     """Raise an error for a tip load that may cause flutter, which a singular stiffness does not show."""
     if scene.may_flutter_by_load:
         name = "follows" if scene.tip_load.follows else "moment"
-        bound = "under such a load, which has no potential, a beam may flutter with a regular stiffness"
+        bound = "a load without potential may cause flutter, although the stiffness is not singular"
         remedy = "look where a growth rate of natural_modes or frequency_locus becomes positive"
         raise InvalidValue(f"tip_load.{name}", getattr(scene.tip_load, name), bound, remedy)
 
@@ -392,7 +392,7 @@ def _find_with_chosen_physics(
         additions, not_known, _ = list_effects(candidate)
         sizes = {added.name: _change(known, find(added.scene)) for added in additions}
         assumed = {added.name: f"it is estimated {added.assumed}" for added in additions if added.assumed}
-        # If rotation bends the beam at every speed, it does not buckle.
+        # A beam that rotation bends at every speed does not buckle: the effect counts as infinite.
         sizes[LARGE_DEFLECTION.name] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
         lost = "its critical speed is not resolved"
         unresolved = {name: lost for name, size in sizes.items() if math.isnan(size)}

@@ -133,7 +133,7 @@ class BeamInSpace(FieldsOnly):
         return bool(self.fibres.any() and self.functions[:, 3].any())
 
     def reduced(self, basis: np.ndarray) -> BeamInSpace:
-        """Transform the beam to other coordinates: q = basis @ q_reduced, one column for each of these."""
+        """Transform the beam to other coordinates, q = basis @ q_reduced; the basis has a column for each."""
         given = {name: getattr(self, name) for name in ("functions", "hinges", "slopes")}
         rows = {k: np.tensordot(basis.T, values, 1) for k, values in given.items() if values is not None}
         K, C = (basis.T @ matrix @ basis for matrix in (self.stiffness, self.damping))
@@ -173,7 +173,7 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
     """
     least = np.linalg.eigvalsh(np.moveaxis(law, 2, 0))[:, 0]
     if (least <= 0).any():
-        k, bound = int(least.argmin()), "it must be positive: such a section deforms without a force"
+        k, bound = int(least.argmin()), "it must be positive, or the section deforms without a force"
         where, remedy = f" at x/L = {stations.quadrature.xi[k]:.3g}", "check its 6 x 6 matrix"
         raise InvalidValue("least eigenvalue of the section", float(least[k]), bound, remedy, where=where)
     stress = np.einsum("abj,nbj->naj", law * stations.quadrature.weights * stations.length, functions)
@@ -282,14 +282,14 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _mean_of_arc(self) -> np.ndarray:
-        """Mean rotation matrix (..., 3, 3) along the arc.
+        """Mean rotation matrix (..., 3, 3) along the arc that models the root's spring.
 
         It turns the rate of the root's rotation vector into the root's angular velocity.
         """
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, sections) from rates of coordinates and of curvatures."""
+        """Compute angular velocities (..., 3, sections) from `rates` and `bending`, rates of curvatures."""
         turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
         return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 

@@ -355,7 +355,7 @@ class BentState(FieldsOnly):
         return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, -force, linear.shift, linear.planes)
 
     def linearized(self) -> Equations:
-        """Return the equations of small motions about this state; loads include minus the elastic force."""
+        """Return the equations of small motions about this state, with minus its elastic force as a load."""
         linear = self.of.linear
         terms = [
             *terms_of_blocks(linear, "mass", self.bent.mass, 2),

@@ -185,7 +185,7 @@ class Strip:
 
     @property
     def rotary_inertia(self) -> Profile:
-        """Rotary inertia per length of the thickness [kg m], which acts when sections twist."""
+        """Rotary inertia of the thickness, per length of the beam [kg m], which acts when sections twist."""
         t = self.section.thickness
         return (self.scene.beam.mass_per_length * t * t).scaled(1 / 12)
 

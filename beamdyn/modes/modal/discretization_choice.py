@@ -174,7 +174,7 @@ def _choose(
     models = list_models(split, discretization, modes, target, cheapest, split is not scene)
     if not isinstance(discretization, str):
         return next(models), None
-    # Some functions of a model may be linear combinations of others.
+    # A model has fewer modes than functions if some functions are linear combinations of others.
     first = next(m for m in models if m.solver.size >= modes or refine_model(m) is None)
     reached = within_reach(first.discretization, target)
     at_ends = refine(
@@ -186,7 +186,7 @@ def _choose(
 
 
 def affordable_target(scene: Scene, discretization: DiscretizationChoice, target: float) -> float:
-    """Limit the error target to what elements, plates and beams in space can reach at acceptable cost."""
+    """Raise the error target, if need be, to what elements, plates and beams in space reach at low cost."""
     if not isinstance(discretization, str):
         return target
     if scene.bends_in_space:
@@ -197,7 +197,7 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
-    """Limit the error target for moment bases, whose estimated errors are too large."""
+    """Raise the error target, if need be, for moment bases, whose estimated errors are too large."""
     return target if discretization.converges_regularly else max(target, MOMENTS_TARGET)
 
 

@@ -164,7 +164,7 @@ def _mesh_error(
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
-    """Estimate the relative truncation error by the functions across the width, for any mesh."""
+    """Estimate the relative error due to the number of functions across a strip; 0 for other beams."""
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
@@ -176,12 +176,12 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 
 
 def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Estimate the relative truncation error as `_ritz_error` does."""
+    """Estimate the relative truncation error of a model by `_ritz_error`, with the model's parameters."""
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     bound = (stiffness / mass).min() + model.equations.shift
-    # The lowest square is needed only as the scale of smaller squares, and if the largest relative distance
-    # is that of a square below the bound.
+    # Errors of squares below the lowest square at rest are relative to it.  It need not be computed if the
+    # largest relative distance is not that of a square below the bound.
     if is_needed := size.min() < _ABOVE * bound:
         relative, below = half / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))
@@ -293,15 +293,15 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
 def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Compute the eigenvalues with the given squares that are nearest to s.
 
-    The squares are smooth in speed and size, and real if the equations are conservative; the eigenvalues
-    themselves change from imaginary to real where a square passes zero.
+    The squares are smooth functions of speed and basis size, and real if the equations are conservative; the
+    eigenvalues themselves change from imaginary to real where a square passes zero.
     """
     root = np.sqrt(squared)
     return np.where(np.real(root * s.conj()) < 0, -root, root)
 
 
 def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
-    """Return whether an unresolved higher mode may in truth be lower than each mode, at each speed."""
+    """Return for each mode and speed whether the exact value of an unresolved higher mode may be lower."""
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest

@@ -73,7 +73,7 @@ class Model(FieldsOnly):
         return self._in_functions_of(self.scene.modelled_beam)
 
     def equations_near(self, scene: Scene) -> Equations:
-        """Build the equations of a scene that differs little, in this model's functions where they suit it.
+        """Build the equations of a scene that differs little, in this model's functions if segments agree.
 
         Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
         properties of the beam, may differ abruptly after the smallest change of these.
@@ -86,7 +86,7 @@ class Model(FieldsOnly):
 
     def _in_functions_of(self, beam: Beam) -> Equations:
         """Build the equations of motion of the straight beam in the functions for a similar beam."""
-        if self.scene.chooses_physics:  # only "auto" is not checked yet: a curved axis needs other equations
+        if self.scene.chooses_physics:  # that "auto" suits a curved axis is checked only here
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene

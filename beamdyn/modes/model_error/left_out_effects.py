@@ -267,7 +267,7 @@ class NotJudged(LeftOutEffects):
     def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
         """Explain how to request the model error."""
         return Words(
-            "What the model leaves out is not computed yet: ask for model_error, which solves several times."
+            "What the model leaves out is not computed yet: ask for model_error, which takes more solutions."
         )
 
 
