@@ -14,7 +14,9 @@ import numpy as np
 
 
 class ErrorMargin(NamedTuple):
-    """Safety factor between the difference of two results, or a tolerance, and the stated error.
+    """Safety factor by which the difference of two results is multiplied to state an error.
+
+    `EFFECTS` is the factor on a tolerance that limits the size of neglected effects.
 
     Parameters
     ----------
@@ -37,7 +39,7 @@ class ErrorMargin(NamedTuple):
 SLOW_BASES = ErrorMargin(
     3.0,
     "frequencies of two Ritz bases, where convergence is slow",
-    "further functions together may change a mode more than the last ones did",
+    "all functions left out may together change a mode more than the last ones added did",
     "stated_frequency_errors",
 )
 BASES_OF_FIELDS = ErrorMargin(
@@ -61,7 +63,7 @@ BASES_OF_PLATES = ErrorMargin(
 LINEAR_MESHES = ErrorMargin(
     2.0,
     "responses and poles of two discretizations",
-    "they converge as fast as the frequencies, but peaks magnify errors of frequency",
+    "responses converge as fast as the frequencies, but peaks magnify errors of frequency",
     "responses",
 )
 LINEAR_MODES = ErrorMargin(
@@ -79,13 +81,13 @@ BASES_OF_STATIC_LOADS = ErrorMargin(
 MODES_OF_MOMENTS = ErrorMargin(
     3.0,
     "moments and strains with n modes and with 1.5 n modes",
-    "after a sudden load mode k contributes as k^-3: neglected modes, up to 2.2 times as much as added ones",
+    "after a sudden load, mode k contributes as k^-3: modes above n are up to 2.2 times those to 1.5 n",
     "stated_load_errors",
 )
 MODES_OF_FORCES = ErrorMargin(
     4.0,
     "shear forces with n modes and with 1.5 n modes",
-    "mode k contributes as k^-2: neglected modes, up to 3 times as much as added ones",
+    "mode k contributes as k^-2: modes above n are up to 3 times those to 1.5 n",
     "stated_load_errors",
 )
 STEPS = ErrorMargin(
@@ -103,7 +105,7 @@ EFFECTS = ErrorMargin(
 
 THREE_DISCRETIZATIONS = ErrorMargin(
     4.0,
-    "changes of poles, limits of the setting angle and coefficients of amplitude",
+    "poles, limits of the setting angle, and coefficients of backbone curves, of three discretizations",
     "the rate of convergence varies from one discretization to the next",
     "stated_answer_errors",
 )

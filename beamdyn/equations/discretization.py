@@ -123,7 +123,8 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-_OF_TENSION = 8  # smallest degree up to which polynomials are cached: that of most weights of integrals
+# Smallest degree of the cached polynomials: most properties, and the tension, have no higher degree.
+_OF_TENSION = 8
 
 
 class Sampler:

@@ -1,6 +1,6 @@
 """Physical effects beyond the Euler-Bernoulli beam: how to include each, and what is assumed without it.
 
-Messages name the two directions in which the beam bends at the root.
+The two directions in which a beam bends at the root are named here too.
 """
 
 from __future__ import annotations
@@ -34,8 +34,8 @@ class Effect:
     value : int
         Value of the field `switch` of `Physics` with which the effect is included.
     needs : tuple of str
-        Inputs of the beam of which the effect needs at least one; `poissons_ratio`, from which the property
-        is computed, comes last.
+        Inputs of the beam of which the effect needs at least one: a property, or `poissons_ratio` (as the
+        last), from which the property is computed.
     bends : bool
         Whether the effect can be combined with large deflection in one plane.
     taken_out : str
@@ -97,7 +97,8 @@ class Effect:
     def _why_refused(self, scene: Scene) -> str | None:
         """Explain why the scene's model cannot include the effect, whatever data are given.
 
-        None if the effect can be included or only data are missing; also with large deflection (not checked).
+        None if the effect can be included, or only data are missing.  Large deflection, as the effect or in
+        the scene, is not checked: the result is None.
         """
         if scene.physics.large_deflection or self is LARGE_DEFLECTION:
             return None
@@ -239,7 +240,7 @@ _ACROSS = "across the direction of bending", "across"
 def check_direction(direction: int) -> int:
     """Check that a direction of deflection is 0 (bending direction at the root) or 1 (across)."""
     if direction not in (0, 1):
-        bound = "give 0 for the direction of bending at the root, or 1 for the direction across"
+        bound = "give 0 for the direction of bending at the root, or 1 for the direction across it"
         raise InvalidValue("direction", direction, bound)
     return direction
 

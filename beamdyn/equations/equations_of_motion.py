@@ -26,11 +26,11 @@ from beamdyn.equations.root_motion import Quantity, RootMotion, root_at_unit_spe
 from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.mount import Mount
 
-# The rounding errors of eigenvalues were fitted to 720 frequencies of random scenes by
+# Both constants are fitted to the rounding errors of 720 frequencies of random scenes, computed by
 # benchmarks/stated_frequency_errors.py.  As rows and columns of the matrices have very different sizes, the
-# errors are smaller than the norms suggest.
+# errors are smaller than the norms of the matrices suggest.
 BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative to the sum of its terms
-# Number of functions above which measured rounding errors grow in proportion to the number of functions.
+# Number of functions above which rounding errors grow in proportion to the number of functions.
 ROUNDING_SIZE = 40
 
 
@@ -206,7 +206,10 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates; plus twist for unknown width."""
+        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates.
+
+        If the width is unknown, it is the deflection of the axis plus the twist [rad].
+        """
         values = self.tip.copy()
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -238,7 +241,7 @@ class Equations:
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Collect a vector over all coordinates from those of trial functions; 0 for the other direction."""
+        """Transform a quantity of the trial functions in one direction to the coordinates; 0 for others."""
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
             if deflection.direction == direction:

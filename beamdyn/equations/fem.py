@@ -95,8 +95,8 @@ class Fem:
         """Compute the positions x/L of nodes; segments have elements in proportion to their length."""
         ends = _meshable(np.array(beam.breakpoints))
         g = 0.0 if self.mesh == "uniform" else _GRADING
-        # A mesh that is uniform over s has seven times smaller elements, over x/L, at the root than at the
-        # tip.
+        # The mesh is uniform over s, with x/L = (s + g s^2) / (1 + g): with g = 3, elements at the root are
+        # seven times shorter than at the tip.
         over_s = (np.sqrt(1 + 4 * g * (1 + g) * ends) - 1) / (2 * g) if g else ends
         counts = _distribute(self.elements, np.diff(over_s), self.on_each)
         parts = [np.linspace(a, b, n + 1)[:-1] for (a, b), n in zip(pairwise(over_s), counts, strict=True)]
@@ -134,7 +134,7 @@ def _meshable(ends: np.ndarray) -> np.ndarray:
     """Return the ends x/L of segments; raise an error if one is so short that rounding spoils elements."""
     lengths = np.diff(ends)
     bound = "a segment between breakpoints must be at least 1e-5 of the length for finite elements"
-    remedy = "let the section jump there, or take discretization='ritz'"
+    remedy = "replace it by a jump of the section, or take discretization='ritz'"
     refuse(lengths < _SHORTEST, "breakpoints: difference of x/L", lengths, "", bound, remedy)
     return ends
 
@@ -314,7 +314,7 @@ def _derivative(u: Any, order: int) -> Any:
     return u.grad[0] if order == 1 else u.hess[0][0]
 
 
-# Products of derivatives of the orders of rows and columns: scikit-fem passes the columns first.
+# Products of derivatives, by the orders for rows and for columns; scikit-fem passes the columns first.
 _PRODUCTS = {
     (a, b): BilinearForm(lambda u, v, w, a=a, b=b: w.weight * _derivative(u, b) * _derivative(v, a))
     for a in range(3)

@@ -37,7 +37,7 @@ def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Vo
 
 
 def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
-    """Compute the strain of the layer's outer face at k positions along it, for n coordinates: (k, n)."""
+    """Compute the strain of the layer's outer face at k positions along it, by unit coordinates: (k, n)."""
     assert beam.electrodes is not None, "electrodes stand on a layer"
     xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
     rows = np.zeros((_FACES, equations.size))

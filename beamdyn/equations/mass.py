@@ -79,7 +79,7 @@ class PiecewisePolynomials:
         return np.concatenate([hats, *on_parts])
 
     def phases(self, left: np.ndarray, right: np.ndarray, number: int) -> np.ndarray:
-        """Compute the phase change [rad] of the highest polynomial over cells with given ends."""
+        """Compute the phase change [rad] of the oscillating polynomial of highest degree over given cells."""
         part, ends = self._part((left + right) / 2), np.array(self.ends)
         start, length = ends[part], np.diff(ends)[part]
         first, last = (np.arccos(np.clip(1 - 2 * (x - start) / length, -1, 1)) for x in (left, right))
@@ -158,7 +158,7 @@ PLACES = np.linspace(0.0, 1.0, 101)  # positions x/L from root to tip at which t
 
 @lru_cache(maxsize=64)
 def steady_tension(beam: Beam, mount: Mount) -> np.ndarray:
-    """Compute the axial force in steady rotation, over squared speed [N s2], at `PLACES`: shape (101,)."""
+    """Compute the axial force in steady rotation, divided by squared speed [N s2], at `PLACES`: (101,)."""
     n_a, n_b = _sampled_tension(beam)
     cosine, _ = exact_cos_sin(mount.precone)
     inward = exact_cos_sin(mount.setting_angle)[0] * mount.radius

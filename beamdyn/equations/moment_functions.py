@@ -66,7 +66,7 @@ _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
 _ORDERS |= {"torsion_stiffness": 1, "warping_stiffness": 2}
 _TURNING = ("torsion_stiffness", "warping_stiffness")  # stiffnesses against turns about the beam
 _SCALAR = ("axial_stiffness", *_TURNING)  # stiffnesses without a direction
-# For each stiffness, the stiffnesses whose displacements contribute inertial forces to its functions.
+# By stiffness: displacements, named by the stiffness against each, whose inertia strains the beam against it.
 _COUPLED = {
     "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
     "shear_stiffness": ("bending_stiffness", "shear_stiffness"),
@@ -170,10 +170,10 @@ class MomentSpaces(FieldsOnly):
         }
 
     def inertia_and_pull(self, stiffness: str) -> tuple[np.ndarray, np.ndarray]:
-        """Return inertia per length at the nodes, and what tension adds to a stiffness, per squared speed.
+        """Return mass per length and tension per squared speed at the nodes.
 
-        Sections that displacements against `stiffness` turn about the beam have the polar inertia, and its
-        radius of gyration.
+        If `stiffness` is that against torsion or warping, return the polar rotary inertia per length, and the
+        tension times the squared polar radius of gyration, instead.
         """
         mass, tension = self.at_nodes(self.beam.mass_per_length), self.at_nodes(axial_tension(self.beam)[1])
         if stiffness not in _TURNING:
@@ -259,8 +259,8 @@ def _build_forces(
     forces.
     """
     beam, parts, causes = spaces.beam, spaces.polynomials, []
-    # Inertial loads: the stiffness that resists the displacement, the derivative order of the displacement,
-    # and the weight.
+    # Causes of forces: the stiffness that resists a displacement, the order of the displacement's derivative,
+    # and the weight that multiplies the derivative.
     mass, tension = spaces.inertia_and_pull(stiffness)
     for name in _COUPLED[stiffness]:
         if name in spaces.compliance:

@@ -192,7 +192,7 @@ def _describe(every: list[Term | Load], assembled: list[Term | Load], scene: Sam
     )
 
 
-_MODELLED = "slopes of any size are modelled; the other terms are what they are for a straight beam"
+_MODELLED = "slopes of any size are modelled; the other terms are listed as for a straight beam"
 _ANY_SLOPE = Entry("large deflection", "cos θ, sin θ", ("bending",), "1", 1.0, True, _MODELLED)
 _EXPLANATIONS = {name: text for field in FIELDS for name, text in field.explanations.items()}
 
@@ -203,5 +203,5 @@ _QUANTITY = {
     "speed_squared": "speed squared [rad2/s2]",
     "root_axial": "root acceleration along the beam [m/s2]",
     "root_transverse": "root acceleration in the direction of bending [m/s2]",
-    "root_across": "root acceleration in the direction across [m/s2]",
+    "root_across": "root acceleration across the direction of bending [m/s2]",
 }

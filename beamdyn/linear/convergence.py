@@ -264,7 +264,7 @@ def _add_modes(
         return doubled(larger, finer)
 
     def settles(found: _Doubled) -> bool:
-        """Return whether more modes change the value by at most tolerance / margin of the largest value."""
+        """Return whether more modes change the value by at most tolerance / margin, over its largest."""
         _, value, _, finer = found
         share = tolerance / LINEAR_MODES.factor
         return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())

@@ -52,7 +52,7 @@ class BalancedCoordinates:
 
     @property
     def squared(self) -> np.ndarray:
-        """Squared undamped frequencies [rad2/s2] of coordinates with mass, in order of magnitude."""
+        """Squared undamped frequencies [rad2/s2] of coordinates with mass, ascending in magnitude."""
         found = self.roots[self.roots > 0] ** -2.0 - self.shift**2
         return found[np.argsort(np.abs(found))]
 

@@ -142,9 +142,10 @@ def frequency_response(
 ) -> FrequencyResponse:
     """Compute the response to a harmonic excitation at a steady speed, over frequency.
 
-    Motions of the straight beam are small, in its modes at the speed, with the static deflection of others.
-    The parametric term is not included: an acceleration along the beam varies its stiffness, which causes
-    responses at other frequencies, too; `random_response` states its size.
+    Small motions about the straight beam are superposed from modes at the speed; all modes left out are
+    represented by their static deflection.  The parametric term is not included: an acceleration along the
+    beam varies the beam's stiffness, which causes responses at other frequencies, too; `random_response`
+    states its size.
 
     Parameters
     ----------

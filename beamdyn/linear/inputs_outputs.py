@@ -280,7 +280,7 @@ class MomentAtRoot:
 
 @dataclass(frozen=True)
 class StrainAtRoot:
-    """Bending strain of the outer fibre at the root, in the section's first direction.
+    """Bending strain at the root, of the outer fibre in the root section's direction of bending.
 
     Examples
     --------

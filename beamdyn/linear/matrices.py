@@ -70,7 +70,7 @@ class Matrices(SceneResult, StatesModelError):
     coordinates, rows : tuple of str
         Meaning of each coordinate q and each equation, with units.
     error : ndarray, shape (2 n,)
-        Estimated relative error of each of the `poles`, in their order: by the modes left out and by the
+        Estimated relative error of each of the `poles`, in their order, due to the modes left out and the
         discretization; nan for an infinite pole, inf for one that is not resolved to 1 %.
     warnings : tuple of str
         Warnings about the validity and accuracy of the matrices.
@@ -268,7 +268,7 @@ def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
     """Compute the load of an excitation; refuse a direction fixed in space: the input matrix would vary."""
     drives = model.drives(excitation)
     bound = "on the rotating beam it acts at its frequency plus and minus the speed: no constant matrix"
-    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response has it'
+    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts it'
     refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
     return drives[0]
 

@@ -5,7 +5,8 @@ With H(s) = d + sum r_k / (s - p_k), on the imaginary axis
     |H|^2 = |d|^2 + 2 Re sum c_k / (s - p_k),    c_k = r_k conj(H)(p_k),
 
 where conj(H)(s) = conj(d) + sum conj(r_j) / (-s - conj(p_j)).  So the integral of |H|^2 S over a piece on
-which S is analytic is that of S, and those of S / (f - mu_k), mu_k = p_k / (2 pi i).  Where mu_k is near,
+which S is analytic is that of S, and those of S / (f - mu_k), mu_k = p_k / (2 pi i).  If mu_k is near
+the piece [a, b],
 
     int S / (f - mu) df = S(mu) log((b - mu) / (a - mu)) + int (S(f) - S(mu)) / (f - mu) df,
 
@@ -143,7 +144,7 @@ def pole_integrals(
         f, w = (start + end) / 2 + half * _POINTS, half * _WEIGHTS
         S = weighted(piece, f)
         near = np.abs(mu - np.clip(np.real(mu), start, end)) < _NEAR * 2 * half
-        # Far from all parts, a power law may be too large to be computed.
+        # The density at a pole; at a pole far from all parts of the piece, a power law may overflow.
         at_pole = near * weighted(piece, np.where(near.any(axis=0), mu, piece.end))
         smooth = (S[..., None] - at_pole[:, None]) / (f[..., None] - mu)
         whole += float((w * S).sum())

@@ -5,7 +5,7 @@ trial functions of the discretization.  What modes leave out follows a slow exci
 static deflection is that of all functions minus that of the modes, the residual flexibility (Craig and
 Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).
 
-In shapes of arrays, n counts kept coordinates, and N all trial functions.
+In shapes of arrays, n counts retained coordinates, and N all trial functions.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class HarmonicDrive:
     load : ndarray, shape (n,)
         Right-hand side of the equations.
     residual : ndarray, shape (N,)
-        Static deflection beyond that of the kept coordinates, over all functions.
+        Static deflection beyond that of the retained coordinates, over all functions.
     accelerations : dict of str to complex
         Accelerations of the root.
     force : tuple of (float, int), optional
@@ -114,19 +114,19 @@ class ModelAtSpeed(FieldsOnly):
 
     @cached_property
     def equations(self) -> Equations:
-        """Equations in the kept coordinates, including the charge of a harvester's circuit."""
+        """Equations in the retained coordinates, including the charge of a harvester's circuit."""
         return self._mechanical.with_charge()
 
     @cached_property
     def _mechanical(self) -> Equations:
-        """Equations in the kept coordinates, without the circuit of a harvester."""
+        """Equations in the retained coordinates, without the circuit of a harvester."""
         if self.modes is None:
             return self.model.equations
         return reduce_to_modes(self.model.equations, ModalBasis(self.modes, (self.speed,)))
 
     @cached_property
     def pencil(self) -> SteadyPencil:
-        """Matrices in the kept coordinates, as polynomials of the speed."""
+        """Matrices in the retained coordinates, as polynomials of the speed."""
         return self.equations.steady()
 
     @property
@@ -146,7 +146,7 @@ class ModelAtSpeed(FieldsOnly):
 
     @cached_property
     def shapes(self) -> np.ndarray:
-        """Matrix that gives the coordinates of all trial functions from the kept coordinates."""
+        """Matrix that gives the coordinates of all trial functions from the retained coordinates."""
         full, kept = self.model.equations, self.equations
         shapes = np.zeros((full.size, kept.size))
         for name, shape in kept.shapes.items():
@@ -197,7 +197,7 @@ class ModelAtSpeed(FieldsOnly):
         return HarmonicDrive(self.shapes.T @ load, self._residual(load), accelerations, force)
 
     def _residual(self, load: np.ndarray) -> np.ndarray:
-        """Compute the static deflection under a load with all functions, minus that with kept coordinates."""
+        """Compute the static deflection under a load with all functions, minus that with retained ones."""
         if self.modes is None:
             return np.zeros_like(load)
         of_all = np.linalg.solve(self._full_stiffness, load)
@@ -209,7 +209,7 @@ class ModelAtSpeed(FieldsOnly):
         return pencil.K0 + self.speed**2 * pencil.K2
 
     def _check_direction(self, name: str, direction: int) -> None:
-        bound = "in the direction across, a beam of one plane is rigid"
+        bound = "a beam modelled in one plane is rigid across its direction of bending"
         remedy = Words("give ", Setting("physics", planes=2))
         if direction >= self.equations.planes:
             raise InvalidValue(name, "across", bound, remedy)
@@ -217,7 +217,7 @@ class ModelAtSpeed(FieldsOnly):
     # Outputs ----------------------------------------------------------------------------------------
 
     def row(self, observation: Observation) -> Row:
-        """Express an output in the kept coordinates."""
+        """Express an output in the retained coordinates."""
         zero = np.zeros(self.equations.size)
         if isinstance(observation, OfLayers):
             _, order, of_kept = self._of_layers(observation)
@@ -252,10 +252,11 @@ class ModelAtSpeed(FieldsOnly):
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
 
     def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
-        """Express an output of layers by the coordinates of all trial functions, and by the kept ones.
+        """Express an output of layers by the coordinates of all trial functions, and by the retained ones.
 
-        Return the first row, the order of the time derivative to which both apply, and the second row.  Where
-        the circuit has a coordinate, the first row applies only to deflections beyond the kept coordinates.
+        Return the row for all functions, the order of the time derivative to which both rows apply, and the
+        row for retained coordinates.  Where the circuit has a coordinate, the row for all functions applies
+        only to deflections beyond the retained coordinates.
         """
         beam, full = self.scene.beam, self.model.equations
         if (electrodes := beam.electrodes) is None:
@@ -323,8 +324,9 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
-# Relative distance between poles of two coarser models up to which they converge, and least used ratio of two
-# distances: several fields, segments or elements do not converge as steadily as one.
+# Distance between a pole of the two coarser models, relative to the pole, above which it is not used; and the
+# least assumed ratio of the distance between the two finer models to it: several fields, segments or elements
+# do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 

@@ -52,7 +52,7 @@ class RandomResponse(SceneResult, JudgedByRepeating):
     rms : float
         Root mean square of the response over all frequencies [unit of the output].
     rms_error : float
-        Estimated error of `rms`, by the modes left out and the discretization [same unit].
+        Estimated error of `rms`, due to the modes left out and the discretization [same unit].
     frequencies : ndarray, shape (F,)
         Frequencies of the response [Hz].
     psd : ndarray, shape (F,)
@@ -289,7 +289,7 @@ def _frequencies(
         shifts = [h * model.speed / _TURN for h in model.drives(drive)]
         return spectra.frequencies_of_response(spectrum, poles, shifts)
     resonances = np.abs(np.imag(poles[np.imag(poles) != 0])) / _TURN
-    # Without a resonance, because all modes are overdamped.
+    # If all modes are overdamped, the sizes of their poles replace the resonances.
     lowest = resonances if len(resonances) else np.abs(poles) / _TURN
     top = 10 * float(lowest.min())
     bottom, about = top / 10**_DECADES, spectra.about_resonances(poles)

@@ -62,10 +62,10 @@ class ResonancePeaks:
     size : ndarray, shape (p,)
         Magnitudes of the response at these frequencies; inf without damping.
     bandwidth : ndarray, shape (p,)
-        Half-power bandwidths [Hz], from one side to the other where the magnitude is its 1/sqrt(2): half the
-        power; nan where it rises again before it has fallen so far on one side or both, towards a close
-        neighbour, or does not fall so far from 0 to twice the highest frequency: such a peak has no
-        half-power bandwidth of its own.
+        Half-power bandwidths [Hz]: distance between the frequencies on both sides at which the magnitude has
+        fallen to 1/sqrt(2) of the peak's.  They are nan if, on a side, the magnitude rises again before it
+        has fallen so far, towards a close peak, or if it does not fall so far from 0 to twice the highest
+        frequency.
     harmonic : ndarray of int, shape (p,)
         Harmonics of the rotation in the response.
     frequency_error, size_error, bandwidth_error : ndarray, shape (p,)

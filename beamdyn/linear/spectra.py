@@ -1,7 +1,7 @@
 """Power spectral densities of random inputs: tables, and roads by ISO 8608.
 
 The module also finds the excitation and density of a random input at a steady speed, and frequencies at which
-to list the density of a random response, so that straight lines between its values have its area.  These
+to list the density of a random response, so that straight lines between its values enclose its area.  These
 frequencies are dense where the input's density is steep, and about each resonance, down to its bandwidth.  An
 input that does not turn with the beam appears shifted by the speed.
 """
@@ -284,7 +284,7 @@ def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: Mode
         by, lacks = (" and ".join(f"{f:.4g}" for f in each) for each in (exciting, missing))
         yield (
             f"the first resonance, at {first:.4g} Hz, is excited by inputs at {by} Hz, but the input has "
-            f"{lowest:.4g} to {highest:.4g} Hz: what {lacks} Hz excites is not in the answer; give all of it"
+            f"{lowest:.4g} to {highest:.4g} Hz: what {lacks} Hz excites is not in the answer; extend it"
         )
 
 
@@ -296,8 +296,8 @@ _STEP = 0.02  # relative step between listed frequencies of the input
 _STEEPEST = 0.1
 _DECADES = 3  # number of decades in which frequencies are listed for an interval that begins at 0
 _CLOSE = 0.2  # step near a resonance, relative to the distance from it or to its bandwidth
-# Range about a resonance in which listed frequencies are dense, in half bandwidths, in addition to its
-# frequency.
+# Range on each side of a resonance in which listed frequencies are dense: its frequency plus this number of
+# half bandwidths.
 _REACH = 30.0
 # Relative distance between the end of an input's range and a listed frequency just outside it, at which the
 # density is 0.

@@ -106,8 +106,8 @@ def state_space(
     Raises
     ------
     ValueError
-        If an argument is out of its range, an input is periodic at this speed, or a kept coordinate has no
-        mass.
+        If an argument is out of its range, an input is periodic at this speed, or a retained coordinate has
+        no mass.
 
     References
     ----------
@@ -158,7 +158,7 @@ class _Rates(NamedTuple):
 
 
 def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
-    """Compute velocities and accelerations by loads of unit inputs (columns); a charge has only a rate."""
+    """Compute velocities and accelerations by loads of unit inputs (columns); only rates of a charge."""
     n = model.equations.size
     m = model.mechanical.stop
     M = model.M[:m, :m]

@@ -115,7 +115,8 @@ def respond(model: ModelAtSpeed, drive: HarmonicDrive, observation: Observation,
     q = np.concatenate([_solve(model, drive.load, s[k : k + step]) for k in range(0, len(s), step)])
     by_kept = q @ row.position + s * (q @ row.velocity) + s**2 * (q @ row.acceleration)
     total = by_kept + extra[0] + s * extra[1] + s**2 * extra[2]
-    if isinstance(observation, StrainAtRoot):  # the moment of a material with damping is E I (k + beta k')
+    if isinstance(observation, StrainAtRoot):
+        # With damping beta of the material, a curvature k has the moment E I (k + beta k').
         total = total / (1 + s * model.scene.damping.stiffness_factor)
     return total
 

@@ -182,7 +182,7 @@ SMALL = 0.02
 # Ratio of the stated error to the difference of the two changes, because this difference may be a rounding
 # error.
 _OF_AMPLITUDE = 2.0
-_STEADY = 1e-3  # relative difference of coefficients below which bases converge steadily
+_STEADY = 1e-3  # relative difference of the coefficients of two bases below which these converge steadily
 # Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.
 _ROUNDED = 1e-7
 _SAMPLES = 16  # number of samples per period, which separate harmonics up to the seventh
@@ -221,7 +221,7 @@ class FreeVibration:
         return cls(state, speed, frequency, v * state.of.beam.stations.length / size)
 
     def coefficient(self, small: float) -> float:
-        """Compute the relative frequency change over the squared relative amplitude, for amplitude 0.
+        """Compute the relative frequency change over the squared relative amplitude, as this goes to 0.
 
         It is extrapolated from the relative amplitudes `small` and half of that.
         """
@@ -231,7 +231,7 @@ class FreeVibration:
     def warnings(self) -> list[str]:
         """List a warning if the second harmonic is close to a natural frequency, and so excites a mode."""
         values = np.abs(np.linalg.eigvals(np.linalg.solve(self._dynamic(0), self._dynamic(2))))
-        near = values.min() < _RESONANT * 3  # the mode itself has the value 3 = |1 - 2^2|
+        near = values.min() < _RESONANT * 3  # of the vibrating mode, the value is |1 - 2^2| = 3
         return ["twice the frequency is near that of another mode: the two exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:

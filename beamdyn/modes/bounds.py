@@ -37,7 +37,8 @@ _NARROW = 1e-11  # relative width of bounds of squared frequencies below which t
 _RESOLVED = 1e-8
 # Numbers of functions, on all segments together, tried for a bound of the critical speed.
 _PROOF_SIZES = (24, 48, 96)
-_CLOSE = 1 - 1e-6  # part of the squared critical speed by Ritz's method from which a bound is close enough
+# Ratio of a lower bound to Ritz's value of the squared critical speed, from which the bound is close enough.
+_CLOSE = 1 - 1e-6
 # Fractions of the squared critical speed by Ritz's method that are tried as lower bounds.
 _SHARES = np.concatenate([1 - 10.0 ** np.arange(-13, 0), 4.0 ** -np.arange(0.5, 45)])
 _HOW = "upper: Rayleigh-Ritz; lower: Rayleigh-Ritz minus a bound of the coupling to all other functions"
@@ -208,7 +209,7 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
-    tip, unit = beam.tip or TipMass(0.0), m * length  # unit of mass: a uniform beam
+    tip, unit = beam.tip or TipMass(0.0), m * length  # unit of mass: beam with the root's section
     moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     tip = TipMass(tip.mass / unit, tip.offset / length, *(j / (unit * length**2) for j in moments))
     xi, lumped = (values.tolist() for values in beam.lumps)
@@ -234,7 +235,10 @@ def bound_critical_speed(scene: Scene) -> float:
     sizes = iter(_PROOF_SIZES)
 
     def finer(found: tuple[float, float]) -> tuple[float, float] | None:
-        """Find the largest squared speed with a stiffness proved positive definite, and Ritz's value."""
+        """Enlarge the basis; return the squared speed below which stability is proved, and Ritz's value.
+
+        None if there is no larger basis to try.
+        """
         if (total := next(sizes, None)) is None:
             return None
         part = PlaneEnclosure(scaled, min(most, max(6, total // segments)), 1.0, flexibility)

@@ -171,7 +171,7 @@ def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float
     """Decide for a slender beam in one plane, if necessary by the lowest eigenvalue of a string (see module).
 
     The parameters are a, the distance of the root from the rotation axis, against the beam's direction [m];
-    c^2 and s^2; and the terms of J_e - J_1 [kg m2].
+    c^2 and s^2; and `tilt`, the part of T_22 by the moments of inertia J_e and J_1 [kg m2].
     """
     L, tip = beam.length, beam.tip or TipMass(0.0)
     m, eps, reach, (xi, lumped) = tip.mass, tip.offset, L + tip.offset - a, beam.lumps
@@ -274,7 +274,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
         return None
     bending = _tensor(beam, "bending_stiffness", xi, planes)
     springs = np.array(mount.root_stiffnesses)[:planes]
-    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # flexibility of the smaller bending stiffness
+    flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # 1 / smaller principal bending stiffness
     # Hinges count as rigid here: see the conditions below.
     root = np.diag([1 / k if k else 0.0 for k in springs])
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
@@ -317,7 +317,7 @@ def _tilting_inertia(
     """Compute I33 and I23 of n sections [kg m], and B23 of the tip body [kg m2]; symbols: see module.
 
     In one plane, I33 is all of the rotary inertia.  Products of inertia within rounding of 0 are set to 0.
-    With precone, B23 includes a factor above 1.
+    With precone eta, B23 is multiplied by |cos^2 eta - 2 sin^2 eta| if that exceeds 1.
     """
     if scene.physics.planes == 1:
         return rotary[:, 0, 0] * bool(components[1, 0]), np.zeros(len(rotary)), 0.0
@@ -334,6 +334,6 @@ def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
     """Evaluate a section property in the directions of bending: shape (n, planes, planes)."""
     values = np.zeros((len(xi), planes, planes))
     for (i, j), profile in section_tensor(beam, name).items():
-        if max(i, j) < planes:  # torsion in one plane uses both rotary inertias
+        if max(i, j) < planes:  # torsion in one plane also has a second rotary inertia
             values[:, i, j] = profile(xi)
     return values

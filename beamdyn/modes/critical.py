@@ -57,7 +57,7 @@ _BENT = Words(
     " finds where its equilibrium turns back",
 )
 _LOST = "the beam that {} has no stiffness against a further bend or twist"
-_KEPT = "the beam that {} was followed so far, and stays stable"
+_KEPT = "the beam that {} was followed up to the largest speed tried, and stays stable"
 # Number of functions of a model that only determines whether rotation loads the beam transversely.
 _FUNCTIONS = 5
 
@@ -180,8 +180,8 @@ def critical_point(
 
     If rotation bends the beam in space at every speed, the critical speed is the one at which the
     equilibrium, continued from rest, loses stability: a deep section buckles sideways, or the equilibrium
-    branch turns back.  The same holds with a tip load of fixed direction; a load that may cause flutter is
-    refused.
+    branch turns back (limit point).  The same holds with a tip load of fixed direction; a load that may cause
+    flutter is refused.
 
     Parameters
     ----------
@@ -316,7 +316,7 @@ def _refuse_without_potential(scene: Scene) -> None:
     """Raise an error for a tip load that may cause flutter, which a singular stiffness does not show."""
     if scene.may_flutter_by_load:
         name = "follows" if scene.tip_load.follows else "moment"
-        bound = "under such a load, which has no potential, a beam may flutter with a regular stiffness"
+        bound = "a load without potential may cause flutter, although the stiffness is not singular"
         remedy = "look where a growth rate of natural_modes or frequency_locus becomes positive"
         raise InvalidValue(f"tip_load.{name}", getattr(scene.tip_load, name), bound, remedy)
 
@@ -356,7 +356,7 @@ def _warnings(
     """Yield warnings about a critical speed that was found, or about a search without result."""
     yield from warn_of_left_out(scene)
     if discretization == "fem" and found.model.discretization.order is None:
-        said = f"finite elements do not resolve the critical speed: sought with {found.model.discretization}"
+        said = f"finite elements do not resolve the critical speed; {found.model.discretization} is used"
         yield Statement(said, kind=INPUT, quantity="discretization")
     if np.isinf(found.speed):
         unknown = "whether there is a critical speed is unknown"
@@ -392,7 +392,7 @@ def _find_with_chosen_physics(
         additions, not_known, _ = list_effects(candidate)
         sizes = {added.name: _change(known, find(added.scene)) for added in additions}
         assumed = {added.name: f"it is estimated {added.assumed}" for added in additions if added.assumed}
-        # If rotation bends the beam at every speed, it does not buckle.
+        # A beam that rotation bends at every speed does not buckle: the effect counts as infinite.
         sizes[LARGE_DEFLECTION.name] = math.inf if bends(Model(candidate, Ritz(_FUNCTIONS))) else 0.0
         lost = "its critical speed is not resolved"
         unresolved = {name: lost for name, size in sizes.items() if math.isnan(size)}

@@ -22,7 +22,10 @@ _HALVINGS = 40  # largest number of halvings of a segment on which no polynomial
 
 
 def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
-    """Compute upper bounds (4,) of the traces of two tensions, mass and tip slope, relative to the energy.
+    """Compute upper bounds (4,) of the traces of the forms P1 to P4 in `beamdyn.modes.residual_bound`.
+
+    The forms are those of tension by rotation, tension by root acceleration, mass, and slope of the tip.  The
+    traces are relative to the elastic energy; `flexibility` is an upper bound of 1/EI.
 
     The slope at x under unit energy is at most sqrt(int_0^x 1/EI), the deflection
     sqrt(int_0^x (x - s)^2 / EI).  Exchanging the integrals leaves outboard integrals of the loads:

@@ -327,9 +327,10 @@ def natural_modes(
 
 
 def _with_signs(equations: Equations, vectors: np.ndarray, kinds: np.ndarray | None) -> np.ndarray:
-    """Scale modes (columns) by signs or phases that make the larger tip deflection real and positive.
+    """Scale modes (columns) by a sign or phase that makes the tip deflection real and positive.
 
-    For modes of torsion or camber, the deflection of the tip's corner at eta = 2 y/width = 1 is used.
+    For bending modes, it is the larger of the deflections in the two directions; for modes of torsion or
+    camber, that of the tip's corner at eta = 2 y/width = 1.
     """
     tips = equations.tips @ vectors
     larger = tips[np.abs(tips).argmax(axis=0), np.arange(tips.shape[1])]

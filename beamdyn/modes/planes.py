@@ -86,7 +86,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
         )
         raise InvalidValue("point_masses", len(lumps), of_lumps, "leave them out, or model one plane")
     if scene.physics.planes == 2 and speed and scene.mount.precone:
-        gyroscopic = "it couples the velocities of two planes, but bounds need equations without such forces"
+        gyroscopic = "it causes gyroscopic coupling of two planes, but bounds need equations without it"
         remedy = "give 0, or speed = 0, or model one plane"
         raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
 

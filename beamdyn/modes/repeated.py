@@ -116,7 +116,7 @@ class JudgedByRepeating(StatesModelError):
 
 
 def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: SolvedValues) -> LeftOutEffects:
-    """Add the change by an effect to the others, if it was unknown before and now is known."""
+    """Add the change by an effect to the others, if it follows from the values `own` and `bent`."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = bent.values / own - 1
     if not np.isfinite(change).all():

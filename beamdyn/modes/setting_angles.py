@@ -26,7 +26,7 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
-_LINEAR = "the limits are those of linear theory: of a bent beam the loci have another shape at every angle"
+_LINEAR = "the limits are those of linear theory: loci of a bent beam have other shapes at every angle"
 # Rounding error of an angle [rad]: the cosine of a limit is a quotient of small differences.
 _ROUNDING = 1e-12
 
@@ -223,6 +223,6 @@ def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[
     if not deflection <= LARGE_DEFLECTION:
         text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
         known = "" if np.isnan(deflection) else text
-        said = f"at such angles the rotation bends the beam, and the limits are {OUTSIDE}{known}"
+        said = f"at the limits, rotation bends the beam statically, and they are {OUTSIDE}{known}"
         about = {"quantity": "static tip deflection over the length", "value": deflection}
         yield Statement(said, kind=OUTSIDE, limit=LARGE_DEFLECTION, **about)

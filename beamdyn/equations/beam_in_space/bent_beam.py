@@ -72,9 +72,9 @@ class BeamInSpace(FieldsOnly):
         Mean squared distance i^2 of the fibres from the axis [m2]; 0 neglects the shortening by twist.
     pretwist : ndarray, shape (N,)
         Pretwist t of the unloaded sections relative to the axes of the strains [1/m].
-    kinks : ndarray, shape (kinks, 4)
-        Unit quaternions of the axes' rotation at the beginning of each cell; needed if the beam's axis has
-        kinks, or does not begin along e1.
+    kinks : ndarray, shape (cells, 4)
+        Unit quaternions of the axes' rotation at the beginning of each cell of the quadrature; needed if the
+        beam's axis has kinks, or does not begin along e1.
     hinges : ndarray, shape (coordinates, 3), optional
         Rotation vector of the root per unit of each coordinate [rad]; None if the root is clamped.
     slopes : ndarray, shape (coordinates, sections), optional
@@ -110,9 +110,10 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def angles(self) -> np.ndarray:
-        """Measure of shape changes per unit of each coordinate: strains integrated from the root.
+        """Integrals of the strains from the root per unit of each coordinate, which measure shape changes.
 
-        The columns are the components of strain that are not 0, at each Gauss point and at the tip.
+        The columns are the components of strain that are not 0, at each Gauss point and at the tip; of a beam
+        that bends in one plane, they are its slopes, if these are known.
         """
         if self.is_planar and self.slopes is not None:
             return self.slopes
@@ -132,7 +133,7 @@ class BeamInSpace(FieldsOnly):
         return bool(self.fibres.any() and self.functions[:, 3].any())
 
     def reduced(self, basis: np.ndarray) -> BeamInSpace:
-        """Transform the beam to other coordinates: q = basis @ q_reduced, one column for each of these."""
+        """Transform the beam to other coordinates, q = basis @ q_reduced; the basis has a column for each."""
         given = {name: getattr(self, name) for name in ("functions", "hinges", "slopes")}
         rows = {k: np.tensordot(basis.T, values, 1) for k, values in given.items() if values is not None}
         K, C = (basis.T @ matrix @ basis for matrix in (self.stiffness, self.damping))
@@ -172,7 +173,7 @@ def elastic_stiffness(stations: BeamStations, functions: np.ndarray, law: np.nda
     """
     least = np.linalg.eigvalsh(np.moveaxis(law, 2, 0))[:, 0]
     if (least <= 0).any():
-        k, bound = int(least.argmin()), "it must be positive: such a section deforms without a force"
+        k, bound = int(least.argmin()), "it must be positive, or the section deforms without a force"
         where, remedy = f" at x/L = {stations.quadrature.xi[k]:.3g}", "check its 6 x 6 matrix"
         raise InvalidValue("least eigenvalue of the section", float(least[k]), bound, remedy, where=where)
     stress = np.einsum("abj,nbj->naj", law * stations.quadrature.weights * stations.length, functions)
@@ -276,16 +277,19 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _root(self) -> BentBeam:
-        """Arc that models the sprung root, at these coordinates; its end is the beam's root."""
+        """Deformed piece of beam that models the root's spring, up to the root: see `BeamInSpace.arc`."""
         return self.beam.arc.at(self.q)
 
     @cached_property
     def _mean_of_arc(self) -> np.ndarray:
-        """Mean rotation matrix (..., 3, 3) along the arc: angular velocity per rotation vector's rate."""
+        """Mean rotation matrix (..., 3, 3) along the arc that models the root's spring.
+
+        It turns the rate of the root's rotation vector into the root's angular velocity.
+        """
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, sections) from rates of coordinates and of curvatures."""
+        """Compute angular velocities (..., 3, sections) from `rates` and `bending`, rates of curvatures."""
         turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
         return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 

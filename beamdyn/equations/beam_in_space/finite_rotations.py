@@ -95,7 +95,8 @@ def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) 
 def _collocate(rates: np.ndarray, A: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Solve y = 1 + A (y rates) for quaternions at p points of c cells, and at the ends of the cells.
 
-    For S states of the curve the shapes are (S, c, p, 4) and (S, c, 4).
+    1 is the identity; A (p, p) and b (p,) are weights of integrals from the start of a cell to its points and
+    to its end.  For S states of the curve the shapes of the results are (S, c, p, 4) and (S, c, 4).
 
     Picard iteration starts from the rotation about the integral of the rates (S, c, p, 3), which is exact if
     their direction is constant.  After j steps its error is of the order h^j / j!, where h is half the

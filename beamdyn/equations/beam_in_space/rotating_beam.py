@@ -63,7 +63,8 @@ from beamdyn.scene.sections import offset_components
 
 _AXES = np.eye(3)
 _KEPT = 4  # number of recently computed states of the beam that are cached
-_SIGNS = 1.0, 1.0, 1.0, -1.0, -1.0, 1.0  # -1 for strains whose field rotates sections about a negative axis
+# Signs of the `STRAINS`: -1 if a positive displacement of the field rotates sections about a negative axis.
+_SIGNS = 1.0, 1.0, 1.0, -1.0, -1.0, 1.0
 # Words for the two directions of deflection, which end the names of a bent beam's deflections.
 _DIRECTIONS = "in the direction of bending", "across"
 _ROOT: tuple[Quantity, ...] = "root_axial", "root_transverse", "root_across"
@@ -337,7 +338,7 @@ class BentState(FieldsOnly):
         return {}  # a cached function would keep the state and its arrays alive by referring to it
 
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
-        """Compute the inertial forces at the stations, or the given fraction of the tip load."""
+        """Compute forces at the stations: `values["unity"]` times the tip load if given, else of inertia."""
         if "unity" in values:
             assert self.of.load is not None
             return self.of.load.on(self.bent, -values["unity"])
@@ -346,7 +347,7 @@ class BentState(FieldsOnly):
         return self.bent.masses.carried(self.of.axis, *turning, root)
 
     def work(self, rates: np.ndarray, accelerations: np.ndarray, root: RootMotion) -> np.ndarray:
-        """Compute the residuals of the equations of motion; all arguments have the shape of q."""
+        """Compute residuals of the equations of motion; `rates` and `accelerations` have the shape of q."""
         carrier = Carrier.of_root(self.of.axis, root)
         return MovingBeam(self.bent, rates, carrier, self.of.load).residual(accelerations)
 
@@ -364,7 +365,7 @@ class BentState(FieldsOnly):
         return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, -force, linear.shift, linear.planes)
 
     def linearized(self) -> Equations:
-        """Return the equations of small motions about this state; loads include minus the elastic force."""
+        """Return the equations of small motions about this state, with minus its elastic force as a load."""
         linear = self.of.linear
         terms = [
             *terms_of_blocks(linear, "mass", self.bent.mass, 2),
@@ -432,7 +433,7 @@ class DeflectedFunctions(FieldsOnly):
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
         """Evaluate functions (order 0) or their derivatives with respect to x/L (order 1), in rows, at xi."""
         if order > 1:
-            raise ValueError("only the deflection and its slope follow a deflected beam")
+            raise ValueError("only deflection and slope, order 0 and 1, are known for a deflected beam")
         stations = self.bent.beam.stations
         moving = self.bent.displacement_rates[self.place, 1 + self.direction]
         rule = stations.quadrature.interpolate_to if order else stations.quadrature.integrate_to

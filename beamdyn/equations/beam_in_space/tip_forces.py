@@ -50,7 +50,7 @@ class TipForces(NamedTuple):
 
 
 def forces_at_tip(scene: Scene, unloaded: BentBeam) -> TipForces | None:
-    """Resolve the tip load in axes at the root, or in those of the tip if it follows it; None if it is 0."""
+    """Resolve the tip load in the root's axes, or the tip's if the load rotates with it; None if it is 0."""
     load, (c, s) = scene.tip_load, aligned_cos_sin(scene.mount.bending_angle)
     if not load.acts:
         return None

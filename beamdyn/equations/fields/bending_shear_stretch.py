@@ -105,7 +105,7 @@ class Shear(TransverseField):
         return FIXED._replace(stiffness="shear_stiffness", direction=self.direction)
 
     def own_stiffness(self, pair: Pair) -> Iterator[Term]:
-        """Yield the shear stiffness term of two shear fields."""
+        """Yield the shear stiffness term of a pair of shear fields, which may be the same field."""
         stiffness = section_tensor(pair.rows.beam, "shear_stiffness").get(pair.directions)
         if stiffness is not None and not pair.rows.field.rotates:
             yield pair.term("shear stiffness", pair.integrate(stiffness, 1))

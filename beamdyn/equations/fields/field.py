@@ -99,7 +99,7 @@ class SectionFunctions(Protocol):
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates, or one proportional to it."""
+        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates; twist if no width is known."""
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
@@ -168,7 +168,7 @@ class Field(ABC):
        over them (`sections`), by which shapes are drawn as surfaces.  `kinds_of_modes` in
        `beamdyn.modes.modal.model` has the name of its kind of modes.
     4. A term whose coefficient varies in time names a quantity of `RootMotion`; all analyses treat
-       every quantity.  Its own stiffness, under the quantity "unity", is positive definite; only that of a
+       every quantity.  The field's stiffness at rest, of the quantity "unity", is positive definite; only a
        field that `turns_at_root` may lack stiffness against its first coordinate.
     5. Of two coupled fields, one supplies the coupling terms in the equations of both.
     6. `explanations` has, by the name of each term and load, its symbol, the reason for its presence and its

@@ -152,7 +152,7 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Differentiate the mass centre's displacement with respect to both rotations: (3, 4) as `beside`."""
+    """Differentiate the mass centre's displacement by the two motions, both rotations: (3, 4) as `beside`."""
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
@@ -182,7 +182,7 @@ def _moment(beam: Beam, component: int, power: int) -> Profile | None:
 
 @lru_cache(maxsize=64)
 def _pulled(beam: Beam) -> list[list[Profile | None]]:
-    """Compute tensions (see `axial_tension`) times the offsets of the tension centre [kg m, kg m2]."""
+    """Compute both tensions of `axial_tension` times each offset of the tension centre [kg m, kg m2]."""
     return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
@@ -197,7 +197,7 @@ class _CoupledMatrix(NamedTuple):
     mirrored: float = 1.0
 
     def placed(self) -> Iterator[tuple[tuple[str, str, Quantity, int], np.ndarray]]:
-        """Yield the matrix and (for two different motions) its transpose times the sign, with field names."""
+        """Yield the matrix and, unless `mirrored` is 0, its transpose times `mirrored`, with field names."""
         yield (self.rows, self.columns, self.quantity, self.order), self.matrix
         if self.mirrored:
             place = self.columns, self.rows, self.quantity, self.order
@@ -267,7 +267,7 @@ class Offsets:
 
     @cached_property
     def _parametric(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """Accelerations of the axis that change the stiffness; only axial ones if none is transverse."""
+        """Accelerations of the axis that change the stiffness; only axial ones if there are no others."""
         scene = self.scene
         steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
         if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
@@ -382,7 +382,7 @@ class Offsets:
                         )
 
     def _carried(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the axis' acceleration on second-order shifts by rotations."""
+        """Yield matrices for the work of the axis' acceleration on second-order motions of mass centres."""
         rotations = [motion for motion in self.motions if motion.rotation is not None]
         for rows, columns in combinations_with_replacement(rotations, 2):
             for quantity, vector, power in self._parametric:
@@ -414,7 +414,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
     def _turned(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the twisting moment, as bending both ways twists the sections."""
+        """Yield matrices for the work of the twisting moment, as bending along e1 and e2 twists sections."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
@@ -461,8 +461,9 @@ class Offsets:
                 yield Load(NAMES_OF_LOADS[quantity], name, vector, quantity)
 
     def _accelerated(self, motion: SectionMotion) -> Iterator[tuple[Quantity, np.ndarray, int]]:
-        """Yield, by quantity of root motion, offsets' coefficients in the work on a motion, and powers of x.
+        """Yield the work of each quantity of root motion on a unit motion: quantity, coefficients, power.
 
+        The work is mass times x^power times the sum of four coefficients times the offsets c1, c2, t1, t2.
         The work of the axial force, which acts at the centre of tension, is a separate load.
         """
         of_mass = motion.beside * np.array([1.0, 1.0, 0.0, 0.0])

@@ -101,7 +101,7 @@ class WidthFunctions:
 
 @lru_cache(maxsize=64)
 def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, list[np.ndarray]]:
-    """Evaluate functions of the width at its edge, and derivatives 0 to 2 at Gauss points over the width."""
+    """Evaluate functions across the width at its edge, and derivatives 0 to 2 at Gauss points across it."""
     edge, series = np.sqrt(2 * np.array(numbers) + 1), np.eye(max(numbers) + 1)[:, [*numbers]]
     eta, _ = gauss_rule(points)
     return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
@@ -185,7 +185,7 @@ class Strip:
 
     @property
     def rotary_inertia(self) -> Profile:
-        """Rotary inertia per length of the thickness [kg m], which acts when sections twist."""
+        """Rotary inertia of the thickness, per length of the beam [kg m], which acts when sections twist."""
         t = self.section.thickness
         return (self.scene.beam.mass_per_length * t * t).scaled(1 / 12)
 
@@ -228,7 +228,10 @@ class Strip:
         along: Space,
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
-        """Integrate over x a weight times the mean over the width of a derivative times `across`."""
+        """Integrate over x a weight times the mean over the width of one derivative times `across`: a vector.
+
+        The derivative is named as for `integrate`; it may be one across the width, but not `along` the beam.
+        """
         _, of_points = gauss_rule(self.points)
         functions, name = rows
         L, total = self.scene.beam.length, 0.0

@@ -174,7 +174,7 @@ class Pair:
         return matrix * length if first + last == 0 else matrix / length ** (first + last - 1)
 
     def twist_by_bending(self, inertia: Profile) -> np.ndarray:
-        """Integrate inertia (v' w'' - v'' w') for fields v along e1 and w along e2, or w and v."""
+        """Integrate inertia (v' w'' - v'' w') for two fields, v along e1 and w along e2, in either order."""
         matrix = self.integrate(inertia, 1, 2) - self.integrate(inertia, 2, 1)
         return matrix if self.directions == (0, 1) else -matrix
 
@@ -229,17 +229,17 @@ class TransverseField(Field):
         "root acceleration": Explanation("-(c aO2 + s aO3) P2", why.say_static_load, (why.LOADED,)),
         "Coriolis coupling of planes": Explanation(
             "2 ω sin(η) S23 q3'",
-            "the precone has rotation about the beam",
+            "precone gives the rotation a component about the beam",
             (why.TURNS, why.PRECONED, why.BOTH),
         ),
         "Euler coupling of planes": Explanation(
             "ω' sin(η) S23 q3",
-            "the precone has rotation about the beam, and the speed varies",
+            "precone gives the rotation a component about the beam, and the speed varies",
             (why.ACCELERATES, why.PRECONED, why.BOTH),
         ),
         "centrifugal bending": Explanation(
             "-ω² s sin(η) cos(η) Q2",
-            "rotation presses a beam with precone to the plane of rotation",
+            "rotation pulls a beam with precone towards the plane of rotation",
             (why.TURNS, why.PRECONED, why.OUT_OF_PLANE),
         ),
     }

@@ -28,7 +28,7 @@ _CONVERGED = 1e-14
 # Change of slope angles [rad] in an iteration, below which rounding may stop the iteration.
 _STALLED = 1e-9
 _STRAYED = 0.5  # ratio of correction to step length above which a step may have reached another curve
-_LOOSE = 2.0  # largest ratio of correction to step length if both ends are known to be on one curve
+_LOOSE = 2.0  # largest ratio of correction to step length if a step is known to end on its curve
 _SYMMETRIC = 1e-9  # relative skew-symmetric part of a matrix, below which it counts as rounding error
 _MOST_TURNS = 20 * np.pi  # largest angle [rad] by which a load may bend or twist a section
 _NEAR = 1e-4  # step below which a change of stability that is no turning point counts as a bifurcation
@@ -324,7 +324,7 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
         # Convergence is at least linear: the next change is at most size**2 / last.
         ends = size < _CONVERGED or (size < _STALLED and size > last / 4)
         if ends or size**2 < _CONVERGED * last:
-            return q, p, iteration + (not ends)  # the omitted iteration counts for the step size
+            return q, p, iteration + (not ends)  # counts the omitted last one, as the step size depends on it
         last = size
     raise NotConverged
 

@@ -37,15 +37,15 @@ _MOST_IN_ALL = 1000
 # Number of segments up to which piecewise polynomials need fewer functions than moments over the beam.
 _FEW_SEGMENTS = 6
 _MANY_ON_EACH = 2  # number of modes per segment above which moments need more functions, and lose digits
-# Number of forces in each direction, in addition to the number of modes, and per digit of accuracy, as
-# published blades need; then the fewest in addition to the modes, as with fewer the error of a mode that
-# lacks functions may be stated too small.  Twisted sections need fewer, because forces in both directions
-# bend them.
+# Numbers of forces in each direction beyond the number of modes: a constant, those added to it per digit of
+# accuracy (both as published blades need), and the least sum, as with fewer the error of a mode that lacks
+# functions may be stated too small.  Twisted sections need fewer, because forces in both directions bend
+# them.
 _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
 # Smallest number of elements on a segment, so that the third of three meshes has a quarter as many on each;
 # and on one with a boundary layer, so that half as many resolve it too.
 _ON_EACH, _ON_LAYERS = 4, 8
-_OF_ELEMENTS = 0.1  # accuracy that determines the length of boundary layers with finite elements
+_OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers
 _MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"
 # Smallest number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode.
@@ -175,7 +175,7 @@ def _choose(
     models = list_models(split, discretization, modes, target, cheapest, split is not scene)
     if not isinstance(discretization, str):
         return next(models), None
-    # Some functions of a model may be linear combinations of others.
+    # A model has fewer modes than functions if some functions are linear combinations of others.
     first = next(m for m in models if m.solver.size >= modes or refine_model(m) is None)
     reached = within_reach(first.discretization, target)
     at_ends = refine(
@@ -187,7 +187,7 @@ def _choose(
 
 
 def affordable_target(scene: Scene, discretization: DiscretizationChoice, target: float) -> float:
-    """Limit the error target to what elements, plates and beams in space can reach at acceptable cost."""
+    """Raise the error target, if need be, to what elements, plates and beams in space reach at low cost."""
     if not isinstance(discretization, str):
         return target
     if scene.bends_in_space:
@@ -198,7 +198,7 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
 
 
 def within_reach(discretization: Discretization, target: float) -> float:
-    """Limit the error target for moment bases, whose estimated errors are too large."""
+    """Raise the error target, if need be, for moment bases, whose estimated errors are too large."""
     return target if discretization.converges_regularly else max(target, MOMENTS_TARGET)
 
 
@@ -321,7 +321,7 @@ def check_discretization(discretization: object) -> None:
         raise InvalidValue("discretization", discretization, bound)
 
 
-# Length of a boundary layer in decay lengths; each factor of 2.7 in accuracy adds half a decay length.
+# Decay lengths in a boundary layer, for a relative eigenvalue error of 1; -ln(error)/2 is added to it.
 _LENGTHS = 5.0
 # Longest boundary layers, over the length, that get separate functions.
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4

@@ -37,8 +37,8 @@ _OF_NOISE = 4.0
 # values are for a beam with one segment, with several (whose functions converge at different rates), and for
 # irregular convergence.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-# Such fractions for a coarser basis with one function less, which may change a mode less than the next
-# function does: convergence always counts as slow.
+# The same three numbers for a coarser basis with one function less, which may change a mode less than the
+# next function does: convergence always counts as slow.
 _BY_ONE = 1.0, 0.01, 0.0
 # Number of functions across plates up to which the margin was measured (convergence slows down above it), and
 # the fraction of the largest distance of all modes that counts as error.
@@ -164,7 +164,7 @@ def _mesh_error(
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
-    """Estimate the relative truncation error by the functions across the width, for any mesh."""
+    """Estimate the relative error due to the number of functions across a strip; 0 for other beams."""
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
@@ -176,11 +176,12 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 
 
 def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) -> np.ndarray:
-    """Estimate the relative truncation error as `_ritz_error` does."""
+    """Estimate the relative truncation error of a model by `_ritz_error`, with the model's parameters."""
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     bound = (stiffness / mass).min() + model.equations.shift
-    # The lowest square matters only if a mode below this bound has the largest relative distance.
+    # Errors of squares below the lowest square at rest are relative to it.  It need not be computed if the
+    # largest relative distance is not that of a square below the bound.
     if is_needed := size.min() < _ABOVE * bound:
         relative, below = half / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))
@@ -225,7 +226,7 @@ def extrapolation_error(
 
 
 def is_halved(mesh: Eigensolver, finer: Eigensolver) -> bool:
-    """Return whether a mesh has about half the functions of a finer one, except on short segments."""
+    """Return whether a mesh is about half as fine as another; short segments, not refined, may prevent it."""
     return mesh.size <= _HALVED * finer.size
 
 
@@ -292,15 +293,15 @@ def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
 def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
     """Compute the eigenvalues with the given squares that are nearest to s.
 
-    The squares are smooth in speed and size, and real if the equations are conservative; the eigenvalues
-    themselves change from imaginary to real where a square passes zero.
+    The squares are smooth functions of speed and basis size, and real if the equations are conservative; the
+    eigenvalues themselves change from imaginary to real where a square passes zero.
     """
     root = np.sqrt(squared)
     return np.where(np.real(root * s.conj()) < 0, -root, root)
 
 
 def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
-    """Return whether an unresolved higher mode may in truth be lower than each mode, at each speed."""
+    """Return for each mode and speed whether the exact value of an unresolved higher mode may be lower."""
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest
@@ -314,10 +315,11 @@ def _ritz_error(
     Half of each distance, the sizes of the squares and the error have shape (speeds, modes); the lowest
     squared frequency at rest is one number, or one for each speed.  Usually further functions change an
     eigenvalue by less than the last ones did.  Exceptions are modes that only every other function changes,
-    and modes whose distance is small by chance.  If convergence is slow, a margin is therefore added, which
-    was measured on random scenes: a fraction of the distances of all modes, relative to the higher mode of
-    two.  The fraction is `of_few` if one field may have too few functions.  If an eigenvalue vanishes, its
-    error is relative to the lowest squared frequency at rest.
+    and modes whose distance is small by chance.  If convergence is slow, a mode's distance is therefore
+    multiplied by a margin that was determined on random scenes, and its error is at least a tenth of the
+    margin times the largest distance of any mode, relative to the larger square of the two modes.  The margin
+    is `of_few` if one field may have too few functions.  If an eigenvalue vanishes, its error is relative to
+    the lowest squared frequency at rest.
     """
     scale = np.maximum(np.maximum(size[:, :, None], size[:, None, :]), lowest[..., None, None])
     largest = (half[:, None, :] / scale).max(axis=2)

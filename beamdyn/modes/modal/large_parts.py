@@ -86,7 +86,7 @@ class LargeSolver(Eigensolver):
     # Conservative equations --------------------------------------------------------------------------
 
     def _lowest(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
-        """Compute the lowest undamped modes without gyroscopic terms; None if the stiffness is unsafe."""
+        """Compute the lowest conservative modes; None unless the stiffness is safely positive definite."""
         try:
             L = np.linalg.cholesky(self.pencil.K0 + speed**2 * self.pencil.K2) if speed else self._at_rest
         except np.linalg.LinAlgError:

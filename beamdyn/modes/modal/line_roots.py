@@ -42,7 +42,7 @@ def find_roots(f: Callable[[float], float], x: np.ndarray, y: np.ndarray) -> Ite
 
 
 def coincides(distance: np.ndarray, frequency: np.ndarray) -> bool:
-    """Return whether a line equals a frequency at every speed, as with a hinge, given their difference."""
+    """Return whether a line equals a frequency at every speed, from their `distance` at each."""
     return bool(np.abs(distance).max() <= _COINCIDENT * frequency.max())
 
 

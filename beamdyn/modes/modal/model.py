@@ -74,7 +74,7 @@ class Model(FieldsOnly):
         return self._over(self.discretization.spaces(self.scene.modelled_beam))
 
     def equations_near(self, scene: Scene) -> Equations:
-        """Build the equations of a scene that differs little, in this model's functions where they suit it.
+        """Build the equations of a scene that differs little, in this model's functions if segments agree.
 
         Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
         properties of the beam, may differ abruptly after the smallest change of these; other functions follow
@@ -89,7 +89,7 @@ class Model(FieldsOnly):
 
     def _over(self, spaces: Spaces) -> Equations:
         """Build the equations of motion of the straight beam in given functions."""
-        if self.scene.chooses_physics:  # other scenes have been checked: a curved axis needs other equations
+        if self.scene.chooses_physics:  # that "auto" suits a curved axis is checked only here
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
@@ -269,7 +269,7 @@ def warn_of_straight(deflection: np.ndarray, speeds: np.ndarray, model: Model) -
     """Yield a warning at speeds at which the straight beam is unstable, if rotation bends it before that."""
     lost = np.isnan(deflection)
     if lost.any() and bends(model):
-        end = f" the straight beam is unstable; the rotation bends it before: the answer is {OUTSIDE}"
+        end = f" the straight beam is unstable; rotation bends it at lower speeds: the answer is {OUTSIDE}"
         yield Statement("at ", list_speeds(speeds, lost), end, kind=OUTSIDE)
 
 

@@ -21,7 +21,7 @@ def solve_gyroscopic(
     """
     n, scale, count = len(d), 1 / np.sqrt(d), min(count, len(d))
     mu, U = np.linalg.eigh(scale[:, None] * M * scale)
-    W = np.zeros((2 * n, 2 * n), dtype=complex, order="F")  # Hermitian, by its upper half
+    W = np.zeros((2 * n, 2 * n), dtype=complex, order="F")  # Hermitian; only its upper half is set
     W[:n, :n], W[:n, n:] = -1j * (scale[:, None] * C * scale), -1j * (U * np.sqrt(np.maximum(mu, 0)))
     theta, y, _, _, failed = zheevr(W, range="I", il=2 * n - count + 1, iu=2 * n, overwrite_a=1)
     if failed:
@@ -54,7 +54,11 @@ def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.n
 
 
 def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Select the lowest modes by 1/s: one of a conjugate pair, growing ones, the slower of two decaying."""
+    """Select the lowest modes by 1/s.
+
+    Each mode has two eigenvalues, of which one is selected: of a conjugate pair, that with Im s > 0; of a
+    growing and a decaying one, the growing one; of two decaying ones, the slower one.
+    """
     inverse = np.where(np.abs(np.real(inverse)) < _REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
     inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)
     s = 1 / inverse

@@ -153,7 +153,8 @@ _INTERVALS = 8, 16, 32  # numbers of intervals between Chebyshev points of the s
 _HIGHEST = 3
 # Interpolation error of squared frequencies in addition to rounding; the stated error includes it.
 _MISFIT = 1e-12
-_MISFIT_OF_MODES = 1e-7  # interpolation error of modes over their largest coordinate; modes are only compared
+# Interpolation error of modes over their largest coordinate; the modes only serve to be followed over speed.
+_MISFIT_OF_MODES = 1e-7
 _LEBESGUE = 3.0  # growth of rounding errors by interpolation: the Lebesgue constant of 17 to 33 points
 
 Solve = Callable[[np.ndarray], Eigen]  # a function that computes modes at given speeds [rad/s]

@@ -227,7 +227,7 @@ class BaseEquations:
         return cls(model.scene, spaces, assemble_over(model.scene, spaces))
 
     def suited_to(self, extended: Scene, modes: int) -> BaseEquations:
-        """Return equations over function spaces that resolve an effect of the extended scene in modes.
+        """Return equations over function spaces that resolve the extended scene's effect on `modes` modes.
 
         The clamp hinders camber near the root, so that the scene with camber has breakpoints there.
         """
@@ -342,7 +342,7 @@ def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarra
 
 
 def _scale(M: np.ndarray, K: np.ndarray) -> np.ndarray:
-    """Compute factors that scale the diagonal of the stiffness, or otherwise of the mass, to 1."""
+    """Compute factors that scale the diagonal of the stiffness (of the mass if that is not positive) to 1."""
     size = np.where(np.diag(K) > 0, np.abs(np.diag(K)), np.abs(np.diag(M)))
     return 1 / np.sqrt(np.where(size > 0, size, 1.0))
 

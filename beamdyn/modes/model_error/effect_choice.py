@@ -5,8 +5,8 @@ Euler-Bernoulli beam that bends in one plane.  The
 largest effect is added, and the others are estimated again for the beam with it, until the sizes of the
 neglected effects, summed for each value of the result, are at most half the tolerance, as an estimate may be
 too low by a factor of two.  Effects below a tenth of the tolerance are not added.  Large deflection excludes
-camber, and in transients, where it is in one plane only, shear, stretch and a second plane; if both are
-needed, the set with the smaller neglected effects is used.
+camber, and in transients, where it is in one plane only, shear, stretch and a second plane; if it and an
+effect that it excludes are needed, the set with the smaller neglected effects is used.
 """
 
 from __future__ import annotations
@@ -215,7 +215,8 @@ def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
     if choice is not None and not choice.physics.large_deflection and size > choice.tolerance:
         yield Statement(
             f"physics = auto: the tolerance {choice.tolerance:g} is not met at the largest deflection: large "
-            f"deflection, left out, is worth up to {100 * size:.2g} %, {_ROUGH:g} (deflection/length)^2",
+            f"deflection, left out, changes frequencies by up to {100 * size:.2g} %, "
+            f"{_ROUGH:g} (deflection/length)^2",
             kind=TOLERANCE,
             quantity="relative change by large deflection",
             value=size,
@@ -257,7 +258,7 @@ def warn_of_plain(scene: Scene) -> Iterator[Statement]:
     """Yield a warning if physics "auto" is given to an analysis that cannot add effects to the model."""
     if scene.chooses_physics:
         plain = "curved beam in space" if plain_physics(scene).physics.large_deflection else "plain beam"
-        said = f"physics = auto: nothing is added here, the answer is that of the {plain}"
+        said = f"physics = auto: this analysis adds no effects, its result is that of the {plain}"
         yield Statement(said, kind=INPUT, quantity="physics")
 
 

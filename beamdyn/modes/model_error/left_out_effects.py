@@ -178,7 +178,7 @@ class LeftOutEffects:
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
             change, notes = known[name], []
             if abs(_largest(change)) < _NEGLIGIBLE:
-                if name in self.not_known:  # said there, where it may be large
+                if name in self.not_known:  # listed as unknown instead: other values may be large
                     continue
             else:
                 first = int(np.nanargmax(np.abs(change)))
@@ -267,7 +267,7 @@ class NotJudged(LeftOutEffects):
     def sentence(self, what: str | None = None, where: str = "", speeds: np.ndarray | None = None) -> Words:
         """Explain how to request the model error."""
         return Words(
-            "What the model leaves out is not computed yet: ask for model_error, which takes some solutions."
+            "What the model leaves out is not computed yet: ask for model_error, which takes more solutions."
         )
 
 
@@ -279,7 +279,7 @@ class StatesModelError(OfChosenPhysics):
     Attributes
     ----------
     judged_by_solving : bool
-        Whether the model error takes longer to compute than the answer.
+        Whether the model error takes longer to compute than the result.
     judged_value, counted : str
         Nouns for the values that have the model error, and for one of several values; used below a table.
     """

@@ -72,8 +72,8 @@ def warn_of_suppressed_camber(
     bent = f"b^2 kappa/t = {parameter} (Searle's parameter) at x/L = {xi[place]:.2g}"
     where = f" the strip is bent to {bent}"
     worth = (
-        f": past 1 its camber is suppressed in part: it is up to {percent(stiffer)} stiffer, its frequencies "
-        f"up to {percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
+        f": above 1 camber is suppressed in part: the strip is up to {percent(stiffer)} stiffer, its "
+        f"frequencies up to {percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
     )
     size = {"quantity": "Searle's parameter b^2 kappa/t", "value": searle[at, place]}
     yield Statement(say_when(int(at)), where, worth, kind=MODEL_ERROR, limit=_CAMBER_DECLINES, **size)
