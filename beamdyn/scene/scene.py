@@ -319,7 +319,7 @@ def _check_large_deflection(scene: Scene) -> None:
 
 # Damper at the tip --------------------------------------------------------------------------------
 
-# Largest damper over sqrt(EI m / L^3): above, rounding errors exceed the decay rate of the tip.
+# Largest damper divided by sqrt(EI m / L^3): above, rounding errors exceed the decay rate of the tip.
 _MOST_DAMPING = 1e6
 
 
@@ -375,7 +375,7 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
     raise InvalidValue(f"physics.{effect}", getattr(physics, effect), bound, remedy, other=first)
 
 
-# Lengths, over the local width, of segments at a clamped root that resolve the stresses in a plate's corners.
+# Lengths, in local widths, of segments at a clamped root that resolve the stresses in a plate's corners.
 _CORNERS = 0.2, 1.2
 # Largest x/L at which a segment near the root that resolves stresses in corners may end.
 _LAST_CORNER = 0.7

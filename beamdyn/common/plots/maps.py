@@ -132,7 +132,7 @@ _TICKS = 6  # most steps between the numbers below a map, which may be long
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
 # The hatched region without results ends where the fraction of missing results, smoothed, is 1/2.
 _SMOOTHED = 1.0  # standard deviation of the Gaussian that smooths the fraction [grid steps]
-_APART = 0.02  # least distance of the smoothed fraction from 1/2 at grid points
+_APART = 0.02  # least distance of the fraction from 1/2 at grid points, so that the end lies between them
 _SAME = 1e-9  # relative range of the values below which they count as equal: no contour lines are drawn
 # Fraction of the smallest, and of the largest, values that do not influence the contour levels.
 _RARE = 0.04

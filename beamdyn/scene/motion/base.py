@@ -322,8 +322,8 @@ def _find_worst_step(t: np.ndarray, f: np.ndarray, df: np.ndarray) -> tuple[floa
     """Find the step of f that differs most from the integral of df: misfit above tolerance, misfit, index."""
     step = np.diff(t)
     misfit = abs(np.diff(f) - step * (df[1:] + df[:-1]) / 2)
-    # If df is monotone, the error of the trapezoidal rule is at most half of this value.
     rounding = 16 * np.finfo(float).eps * (abs(f).max() + t[-1] * abs(df).max())
+    # If df is monotone, the error of the trapezoidal rule is at most half of the first term.
     allowed = step * abs(np.diff(df)).max() + rounding
     k = int((misfit - allowed).argmax())
     return float(misfit[k] - allowed[k]), float(misfit[k]), k
