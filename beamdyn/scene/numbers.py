@@ -286,7 +286,7 @@ def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str
 
 
 def _scaled(beam: Beam, name: str, factor: float) -> Beam:
-    """Multiply a property of the beam, or stretch its sections in the direction of one side."""
+    """Multiply a property of the beam, or, if `name` is a side, stretch its sections in that direction."""
     if name in PROPERTY_UNITS and getattr(beam, name) is None:
         raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
     factor = positive(SCALE + name, factor)

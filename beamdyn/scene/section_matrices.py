@@ -158,7 +158,7 @@ class SectionMatrices(FieldsOnly):
             where = f" at x/L = {xi[k]:.4g}"
             raise InvalidValue(f"matrices.{name}", float(least[k]), bound, remedy, "", LEAST, where=where)
         if name == "mass" and (bad := np.flatnonzero(strangeness(matrices) > MOST_STRANGENESS)).size:
-            bound = "no rigid section has such a mass matrix: it has m, m times the centre, and inertias"
+            bound = "no rigid section has such a mass matrix: m times the centre couples forces and moments"
             value, where = float(strangeness(matrices)[bad[0]]), f" at x/L = {xi[bad[0]]:.4g}"
             raise InvalidValue("matrices.mass", value, bound, "check its entries", where=where)
 

@@ -354,7 +354,7 @@ def round_below(value: float) -> float:
 
 
 def length_text(size: float) -> str:
-    """Format a length [m] in metres or millimetres."""
+    """Format a length [m] in metres, below 1 m in millimetres."""
     return f"{size:.4g} m" if size >= 1 else f"{1e3 * size:.4g} mm"
 
 

@@ -443,7 +443,7 @@ def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _key(name: str, hint: Any) -> str:
-    """Return the key of an argument: as described, or its name; "tip_x" and "tip_y" for a pair "tip"."""
+    """Return the key of an argument: the described one, else its name ("tip_x", "tip_y" for a pair)."""
     described = description(hint)
     return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 

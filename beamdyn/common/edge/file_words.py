@@ -67,7 +67,7 @@ def check_names(given: Sequence[str]) -> None:
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Return a sentence on words that belong to no option; often a blank separates number and unit."""
+    """Return a sentence on words that belong to no option; often a blank stands before a unit."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""

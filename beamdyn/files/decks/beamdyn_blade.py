@@ -244,7 +244,7 @@ def _check_matrices(
         (least_eigenvalues(ours) <= LEAST, "a positive definite matrix"),
     ]
     if name == "mass":
-        checks += [(strangeness(ours) > MOST_STRANGENESS, "a rigid section: m, m times its centre, inertias")]
+        checks += [(strangeness(ours) > MOST_STRANGENESS, "the mass matrix of a rigid section")]
     for bad, wanted in checks:
         if bad.any():
             k = int(bad.argmax())
