@@ -219,7 +219,7 @@ def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
 _SAMPLES = 1000  # number of times at which functions are compared with their derivatives
 _STEP = 1e-7  # step of the finite differences, relative to the interval
 _ZOOMS = 3  # number of refinements of a step whose values do not fit, before the step is reported as a jump
-_MISFIT = 1e-6  # allowed misfit, relative to the largest derivative
+_MISFIT = 1e-6  # allowed error of a given derivative, relative to its largest value
 
 
 def check_picklable(motion: Motion) -> None:
