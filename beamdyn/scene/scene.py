@@ -308,11 +308,11 @@ def _check_large_deflection(scene: Scene) -> None:
         remedy = "leave large_deflection out where the deflection is small"
         raise InvalidValue("harvester.resistance", scene.beam.electrodes.resistance, bound, remedy, "ohm")
     if scene.beam.point_springs:
-        bound = "with physics.large_deflection there are none: they would keep their direction"
+        bound = "with physics.large_deflection these are not modelled: they would keep their direction"
         remedy = "leave large_deflection out where the deflection is small"
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     if scene.damping.tip_damper:
-        bound = "with physics.large_deflection there is none: the tip also moves along the beam"
+        bound = "with physics.large_deflection it is not modelled: the tip also moves along the beam"
         remedy = "give damping.ratios, or leave large_deflection out"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
 

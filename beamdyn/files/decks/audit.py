@@ -118,7 +118,7 @@ def _one_plane(scene: Scene, plane: str) -> Scene:
 
 
 def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
-    """Return the tip body as it moves when the blade bends in one plane."""
+    """Return the tip body without offset across, its `inertia` about the axis of bending in a plane."""
     tip = tip and replace(tip, offset_across=0.0)
     if tip is None or plane == "flap":
         return tip
