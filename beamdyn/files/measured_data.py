@@ -131,7 +131,7 @@ _Read = tuple[np.ndarray, list[list[str]], tuple[str, ...], Mapping[str, np.ndar
 
 
 def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, count: int) -> np.ndarray:
-    """Return the speeds of the rows, from the file or as given by the caller."""
+    """Return the speeds of the rows: `own` from the file, else `given` by the caller, else 0 for one row."""
     if own is not None:
         if given is not None:
             raise InvalidValue(

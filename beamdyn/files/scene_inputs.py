@@ -178,11 +178,13 @@ class _BeamInput(CoreSection):
     ] = None
     sweep: Annotated[
         Along | None,
-        Varying("rad", "Lambda", "angle of the axis to its direction at the root, in the direction across"),
+        Varying(
+            "rad", "Lambda", "angle of the axis to its direction at the root, out of the plane of bending"
+        ),
     ] = None
     prebend: Annotated[
         Along | None,
-        Varying("rad", "beta", "angle of the axis to its direction at the root, in the direction of bending"),
+        Varying("rad", "beta", "angle of the axis to its direction at the root, in the plane of bending"),
     ] = None
     point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
     point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012
@@ -238,7 +240,7 @@ class StiffnessInput(_BeamInput):
     ] = None
     second_bending_stiffness: Annotated[
         Along | None,
-        Varying("N m2", "E I2", "bending stiffness in the direction across, for two planes", above=0),
+        Varying("N m2", "E I2", "stiffness for bending in the direction across, for planes = 2", above=0),
     ] = None
     shear_stiffness: Annotated[
         Along | None, Varying("N", "kappa G A", "shear stiffness, for shear", above=0)
@@ -265,7 +267,11 @@ class StiffnessInput(_BeamInput):
     ] = None
     tension_offset: Annotated[
         Along | None,
-        Varying("m", "t", "offset of the tension centre, likewise; bending stiffnesses are about it"),
+        Varying(
+            "m",
+            "t",
+            "offset of the tension centre from the shear centre, across; bending stiffnesses are about it",
+        ),
     ] = None
 
     @cached_property

@@ -271,7 +271,7 @@ def as_velocity(text: object) -> float | None:
 
 
 def with_rolling_speeds(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Convert velocities of a rolling wheel to rotational speeds [rad/s]; return the file's tables."""
+    """Return a file's tables with velocities of a rolling wheel converted to rotational speeds [rad/s]."""
     motion = data.get("motion")
     rotation = motion.get("rotation") if isinstance(motion, Mapping) else None
     if not isinstance(motion, Mapping) or not isinstance(rotation, Mapping):

@@ -23,7 +23,7 @@ from beamdyn.equations.discretization import Cells, RootConditions, SampledSpace
 from beamdyn.loads.stations import SpanStations
 from beamdyn.scene.profile import Profile
 
-_TOUCHING = 1e-12  # distance of mass and station, over the length, that counts as 0
+_TOUCHING = 1e-12  # distance of a point mass from a station, divided by the length, that counts as 0
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class CutQuadrature:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Quadrature weights, followed by 1 for each station, where only delta functions are not 0."""
+        """Quadrature weights, then 1 for each station, for the delta functions of virtual displacements."""
         _, w = gauss_rule(self.cells.points)
         inside = (np.diff(self._ends)[:, None] / 2 * w).ravel()
         return np.concatenate([inside, np.ones(len(self.stations.xi))])
@@ -82,7 +82,7 @@ class CutSpace(SampledSpace):
 
     @property
     def trials(self) -> int:
-        """Number of trial functions, before the virtual displacements."""
+        """Number of trial functions, which come before the virtual displacements."""
         return 0 if self.space is None else self.space.size
 
     @cached_property
@@ -102,7 +102,7 @@ class CutSpace(SampledSpace):
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values and derivatives of all functions at the points; at stations, of delta functions only."""
+        """Values and derivatives at the points; at stations, virtual displacements have 0 or deltas."""
         count, values = len(self.quadrature.stations.xi), []
         for order in range(self.derivatives + 1):
             sampled = self.evaluate(self.points, order)
@@ -117,7 +117,7 @@ class CutSpace(SampledSpace):
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th derivatives with respect to x/L, without delta functions: one row each."""
+        """Evaluate `order`-th derivatives with respect to x/L, without deltas: one row for each function."""
         stations = self.quadrature.stations
         cut, least = stations.xi[:, None], stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
         moved = (np.asarray(xi) > least[:, None]).astype(float)  # 1 for points outboard of each cut
@@ -152,7 +152,8 @@ class CutSpaces:
     length : float
         Length of the beam [m].
     without : str
-        Stiffness of a deformation without trial functions: "axial_stiffness" if stretch is not modelled.
+        Stiffness against a deformation that is not modelled, such as "axial_stiffness" for stretch; it has no
+        trial functions.
     """
 
     spaces: Spaces

@@ -93,7 +93,7 @@ class LoadCycles(SceneResult, JudgedByRepeating):
         return np.array(found.ranges.max(initial=0.0))
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Find the largest range with an effect added: by another simulation, or from the deflection."""
+        """Find the largest range with an effect added: `as_deflection`, or if None, by a simulation."""
         known = None if self.loads is None else self.loads.as_deflection(self.judged(self), name)
         return known or super().solve(scene, name)
 

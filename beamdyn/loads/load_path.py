@@ -25,7 +25,7 @@ _BATCH = 500  # number of times evaluated at once
 _REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and of grid points in each
 _OF_TURNING_POINTS = 2  # number of refinements of a turning point: values within 1e-6 of the largest range
 _BETWEEN_SAMPLES = 4  # times per sample of the run at which turning points are sought
-# Distance before a segment's end, over its duration, at which loads are evaluated: they may jump at the end.
+# Time before a segment's end, in its durations, at which loads are evaluated: at the end they may jump.
 _BEFORE_JUMP = 1e-9
 
 

@@ -38,7 +38,7 @@ from beamdyn.scene.sections import weight_degree
 STRAIGHT = "loads along the span of a beam with large deflection are not computed"
 _LEAVE_OUT = "leave it out; root moments have it"
 _OF_TAPERED = (
-    "loads along the span are known with it where the width is constant, without piezoelectric layers"
+    "loads along the span are computed with it only if the width is constant, without piezoelectric layers"
 )
 
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
@@ -75,7 +75,7 @@ class LoadRows:
         return next(iter(self.load.values())).shape  # pyright: ignore[reportReturnType]
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Evaluate the loads at T times, with n coordinates q and velocities v (T, n): (T, S, K)."""
+        """Evaluate K loads at each of S stations and T times, (T, S, K), from root motion, q and v (T, n)."""
         total = np.zeros((len(q), *self.shape))
         for quantity, values in self.load.items():
             total += getattr(root, quantity)[:, None, None] * values
@@ -273,7 +273,7 @@ def refuse_uncovered_camber(scene: Scene) -> None:
 
 def _refuse_uncovered(scene: Scene) -> None:
     """Refuse springs along the span and damping that is not modal: the rows do not contain their forces."""
-    bound = "loads along the span are known without it"
+    bound = "loads along the span cannot be computed with it"
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, _LEAVE_OUT)
     for name in ("mass_factor", "stiffness_factor", "tip_damper"):

@@ -202,7 +202,7 @@ class LinearLoads:
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
-        """Outputs by displacements and velocities alone, and outputs by a unit force on each coordinate."""
+        """Outputs by displacements and velocities (accelerations eliminated), and by unit forces."""
         model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
         acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
@@ -287,20 +287,20 @@ class RandomStatistics:
     def largest(self, factor: Callable[[np.ndarray], np.ndarray], duration: float) -> np.ndarray:
         """Compute the expected largest magnitudes in a duration [s].
 
-        `factor` gives the peak factors, over the root mean square, for numbers of zero crossings.
+        `factor` gives the peak factors, largest value by root mean square, for numbers of zero crossings.
         """
         count = np.maximum(2 * self.crossings * duration, _LEAST)
         return np.abs(self.mean) + self.gravity + factor(count) * self.rms_in_turn
 
 
 def expected_factor(count: np.ndarray) -> np.ndarray:
-    """Compute the mean of the largest value in a number of zero crossings, over the root mean square."""
+    """Compute the mean of the largest value in a number of zero crossings, divided by the rms value."""
     root = np.sqrt(2 * np.log(count))
     return root + np.euler_gamma / root
 
 
 def safe_factor(count: np.ndarray, probability: float) -> np.ndarray:
-    """Compute a quantile of the largest value in a number of zero crossings, over the root mean square."""
+    """Compute a quantile of the largest value in a number of zero crossings, divided by the rms value."""
     return np.sqrt(2 * np.log(np.maximum(count / -math.log(probability), 1.0)))
 
 

@@ -220,7 +220,7 @@ def _solve(
     if (lost := least <= _SINGULAR).any():
         raise NoEquilibrium(
             f"the straight beam has no stable equilibrium at {speeds[lost][0]:.6g} rad/s: rotation or its "
-            "weight buckles it there or before, or it turns freely about its root"
+            "weight buckles it at this or a lower speed, or it turns freely about its root"
         )
     q = np.linalg.solve(scaled, (equations.load(root) / size)[..., None])[..., 0] / size
     return rows.through(asked.outputs.matrix).at(root, q, np.zeros_like(q)), q @ equations.tips.T

@@ -30,10 +30,10 @@ SHOWN = {name: (1.0, unit) for name, unit in UNITS.items()} | _OF_SECTIONS
 
 _EVENLY = 21  # number of stations by default, in addition to both sides of each jump
 _MOST, _MOST_POINTS = 1001, 100
-_SAME = 1e-12  # distance over the beam's length below which a position counts as at a breakpoint
-_BESIDE = 2e-12  # distance from a jump, over the beam's length, at which section properties are evaluated
+_SAME = 1e-12  # distance, in lengths of the beam, below which a position counts as at a breakpoint
+_BESIDE = 2e-12  # distance from a jump, in lengths of the beam, at which section properties are evaluated
 _ROUNDING = 1e-9  # relative tolerance within which a point on the section's edge counts as inside
-# Largest difference of two models, over the largest load along the span, up to which it bounds the error.
+# Largest difference of two models, relative to the largest load along the span, that bounds the error.
 _LIMIT = 0.3
 _ROUNDING_OF_LOADS = 1e-12  # rounding error relative to the largest load along the span
 _BETWEEN = 21  # number of further stations at which two models are compared

@@ -35,7 +35,8 @@ from beamdyn.steady.response import SteadyResponse
 from beamdyn.steady.vibration import combine_pairs, vibration_of
 
 _BATCH = 2000  # number of sums of spectral lines whose largest values are computed at once
-_NEGLIGIBLE = 1e-12  # amplitude of a line of the tip, over the sum of all, below which it is left out
+# Amplitude of a spectral line of the tip deflection, relative to the sum of all, below which it is left out.
+_NEGLIGIBLE = 1e-12
 
 
 @dataclass(frozen=True)

@@ -111,7 +111,7 @@ class TransientLoads(span_loads.SpanLoads):
         return super().left_out_effects if from_rest else nothing_known(self.scene)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Find the largest value with an effect added, by another simulation or from the deflection."""
+        """Find the largest value with an effect added: `as_deflection`, or if None, by a simulation."""
         return self.as_deflection(self.judged(self), name) or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:

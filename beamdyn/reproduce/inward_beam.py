@@ -38,7 +38,7 @@ _MODELS = (("Ritz", "ritz", "bending"), ("FE", "fem", "bending"), ("with stretch
 _MODES = 5  # number of modes of the published simulation
 _FIGURE_6 = np.linspace(0, TOP, 151)  # speeds of Fig. 6 [rad/s]
 _DAMPING = 0.01  # damping ratio with which free vibration decays before 20 s
-_ROUNDING = 1e-12  # relative error, by rounding, of a limit that is defined for a given number of modes
+_ROUNDING = 1e-12  # relative error of a setting-angle limit for a given number of modes: rounding alone
 _JUDGED = (100.0, 400.0)  # speeds at which Fig. 8 and 9 are checked [rad/s]: one of Table 2, and a higher one
 
 

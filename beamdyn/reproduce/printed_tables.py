@@ -75,8 +75,8 @@ def all_entries(discretization: str) -> Entries:
 def cases(paper: str) -> Iterator[dict[str, Any]]:
     """Yield the cases of a paper's tables: one for each row, with the data that rows of a table share.
 
-    Besides the keys of ``rotating_beams.toml``, cases have ``where``, which names the row, ``factor`` of the
-    printed values over the nondimensional ones, and ``exact``, values by an independent method by mode
+    Besides the keys of ``rotating_beams.toml``, cases have ``where``, which names the row, ``factor``, the
+    ratio of printed to nondimensional values, and ``exact``, values by an independent method by mode
     number. Mass and stiffness are those of a linearly tapering rectangular section, unless they are given.
     """
     for printed in load(paper).get("table", []):

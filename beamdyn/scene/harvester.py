@@ -156,7 +156,7 @@ class Harvester(FieldsOnly):
             raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check all three", "F/m", limit)
         nu = self.poissons_ratio
         if nu is not None and material.held_across(nu).permittivity <= 0:
-            bound = "held across, a layer would have no permittivity: no material couples so much"
+            bound = "held along and across, a layer would have no permittivity: no material couples so much"
             raise InvalidValue("harvester.poissons_ratio", nu, bound, "check all four")
 
     @property
@@ -246,7 +246,7 @@ class Harvester(FieldsOnly):
         for name in ("width", "thickness"):
             side = getattr(beam.section, name)(inside)
             if np.ptp(side) > _EVEN * side[0]:
-                bound = f"it must be constant under the layers, which begin where it is {side[0]:.6g} m"
+                bound = f"it must be constant under the layers, and is {side[0]:.6g} m where they begin"
                 remedy = f"give them a shorter span, or a beam of even {name} there"
                 raise InvalidValue(name, float(side[-1]), bound, remedy, "m")
             found.append(float(side[0]))
@@ -272,13 +272,13 @@ class Electrodes(FieldsOnly):
     fibre : float
         Distance of the outer face of a layer from the neutral axis [m].
     laminate : Laminate
-        The strip with the layers, whose deflections may vary across.
+        The strip with the layers, whose deflections may vary across the width.
     flat : Coupled or None
         Coupling and capacitance per length of sections that cannot camber; None where a Poisson's ratio is
         not known.
     across : bool
-        Whether the deflections of the scene vary across the width: then the constants of `flat` hold, and
-        camber is a deflection.
+        Whether the scene models camber; if so, the constants of `flat` hold, since the effect of camber on
+        coupling and capacitance is a part of the solution.
     """
 
     harvester: Harvester

@@ -32,9 +32,10 @@ _HARVESTER = "harvester."  # prefix of the numbers of piezoelectric layers
 # Prefixes of numbers that belong to the beam with layers; other numbers belong to the beam without layers.
 _ON_ANY_BEAM = "beam.tip.", "beam.point_mass[", "beam.point_spring["
 _POINTS = {"point_mass": PointMass, "point_spring": PointSpring}
-# Exponents of a section's sides in the section's properties, for any shape of the section.
+# `_SIDE_POWERS` has the exponents of the sides of a section, of any shape, in its properties: 1 for both in
+# `_LINEAR`, 3 for the thickness in `_OF_FIRST` (torsional stiffness: of thin sections), 3 for the width in
+# `_OF_SECOND`.
 _LINEAR = ("mass_per_length", "axial_stiffness", "shear_stiffness", "second_shear_stiffness")
-# The exponent of torsional stiffness is that of thin sections.
 _OF_FIRST = ("bending_stiffness", "rotary_inertia", "torsion_stiffness")
 _OF_SECOND = ("second_bending_stiffness", "second_rotary_inertia")
 _SIDE_POWERS = {
@@ -56,8 +57,9 @@ def units() -> dict[str, str]:
     of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
+    # Reversed, so that the position of a point mass or spring is listed after its other numbers.
     for name, kind in _POINTS.items():
-        found |= dict(reversed([*_numbers(kind, f"beam.{name}[]")]))  # the position comes last
+        found |= dict(reversed([*_numbers(kind, f"beam.{name}[]")]))
     found |= dict(_numbers(Mount, "mount"))
     found |= {"model.damping_ratio": "", "model.gravity": "m/s2", "damping.ratios[]": ""}
     found |= {"tip_load.force[]": "N", "tip_load.moment[]": "N m"}
@@ -78,7 +80,7 @@ def is_of_motion(path: str) -> bool:
 
 
 def is_speed(path: str) -> bool:
-    """Return whether a path is "speed", or a speed in the motion, in whose place "speed" is to be given."""
+    """Return whether a path is "speed", or of a speed in the motion, for which users must give "speed"."""
     return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
 
 
@@ -104,7 +106,7 @@ def check_path(argument: str, path: object) -> str:
 
 
 def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
-    """Yield path and unit of each number among the fields of a class and of their classes, except speeds.
+    """Yield path and unit of each number, but speeds, in the fields of a class and in objects in its fields.
 
     Each path starts with `path`.
     """
@@ -284,7 +286,7 @@ def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str
 
 
 def _scaled(beam: Beam, name: str, factor: float) -> Beam:
-    """Multiply a property of the beam, or stretch its sections in the direction of one side."""
+    """Multiply a property of the beam, or, if `name` is a side, stretch its sections in that direction."""
     if name in PROPERTY_UNITS and getattr(beam, name) is None:
         raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
     factor = positive(SCALE + name, factor)

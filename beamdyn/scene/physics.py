@@ -138,7 +138,7 @@ class JudgedEffect:
     name : str
         Name of the effect.
     size : float
-        Largest relative change that the effect makes in the answer; inf where it changes which modes there
+        Largest relative change that the effect makes in the result; inf where it changes which modes there
         are, nan where it is not known.
     included : bool
         Whether the physics includes it.
@@ -173,7 +173,7 @@ class PhysicsChoice:
     physics : Physics
         The physics that was chosen.
     tolerance : float
-        Relative change of the answer that may be left out.
+        Relative change of the result that may be left out.
     speeds : tuple of float
         Speeds at which the sizes of the effects were estimated [rad/s].
     effects : tuple of JudgedEffect
@@ -293,10 +293,10 @@ class OfChosenPhysics(Result):
 # Physics that tip loads and springs require ------------------------------------------------------------
 
 ROOT_SPRINGS = "root_stiffness", "second_root_stiffness"
-_ALONG = 1e-12  # component out of the plane of bending, over the load, that counts as rounding error
-# Largest spring stiffness at the root over EI/L: a stiffer spring's rotation is within rounding of a clamp.
+_ALONG = 1e-12  # part of the load out of the plane of bending that counts as rounding error
+# Largest spring stiffness at the root, divided by EI/L: rounding hides the rotation of a stiffer one.
 _STIFFEST = 1e16
-# Largest spring stiffness along the beam over EI/L^3: above, rounding hides the spring's deflection.
+# Largest spring stiffness along the beam, divided by EI/L^3: above, rounding hides the spring's deflection.
 _STIFFEST_POINT = 1e9
 
 

@@ -207,7 +207,8 @@ class TipLoad:
     Parameters
     ----------
     force : sequence of 3 floats
-        Force [N] along b1, b2, b3: along the beam at its root, in the plane of rotation, and along the axis.
+        Force [N] along b1, b2, b3: along the beam at its root, perpendicular to it in the plane of
+        rotation, and along the axis of rotation.
     moment : sequence of 3 floats
         Moment about b1, b2, b3 [N m].
     follows : bool

@@ -25,7 +25,7 @@ _FIT_NODES = (8, 16, 32, 64, 128)  # numbers of Gauss points tried in turn; 32 r
 _SHORTEST_SEGMENT = 1e-12  # difference of x/L below which two breakpoints differ only by rounding
 _FIT_TOLERANCE = 1e-13  # largest accepted error of a fit, relative to the function's largest value
 _ZERO = 5e-13  # a property counts as 0 below this fraction of its largest value on a segment
-_NOISE = 8 * float(np.finfo(float).eps)  # rounding error of the coefficients of a fit, over the largest
+_NOISE = 8 * float(np.finfo(float).eps)  # rounding error of a fit's coefficients, relative to the largest one
 _SPACING = 2.5e-5  # distance in x/L of samples of a user's function: features wider than this are found
 _FEW = 513  # number of samples, denser towards the ends of a segment, at which a fit is compared first
 _AT_ONCE = 4096  # number of samples compared at once, which fit into the processor's cache
@@ -159,7 +159,7 @@ class Profile(FieldsOnly):
     def outboard_integral(self) -> Profile:
         """Integrate from xi to 1: for a mass per length, this is the mass outboard of each section."""
         inner = numerics.integrate_series(-np.diff(self._ends) / 2 * self.series)
-        # Integrals over each segment, as values at the left ends.
+        # The integral over each segment is the value of its series at the left end, t = -1.
         of_segments = inner[::2].sum(axis=0) - inner[1::2].sum(axis=0)
         inner[0, :-1] += np.cumsum(of_segments[:0:-1])[::-1]
         return _of_series(self.breakpoints, inner)

@@ -43,7 +43,7 @@ _THICK_CAMBER, _THICK_WARPING = (-0.975, 0.826), 7.0
 # Length near the root over which the clamp stiffens bending in the direction of the width, in widths and in
 # thicknesses; fitted to solids of random cantilevers.
 _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
-# Largest length near the root over which the clamp stiffens bending, over the length of the beam.
+# Largest length near the root over which the clamp stiffens bending, as a fraction of the length of the beam.
 _LONGEST_REACH = 0.7
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 _ZETA_5 = 1.036927755143369926  # 1 + 1/2^5 + 1/3^5 + ...; scipy.special is slow to import
@@ -101,7 +101,7 @@ class Rectangle:
 
     @cached_property
     def torsion_factor(self) -> Profile:
-        """Torsional constant of the section over width thickness^3/3, its value for infinite width."""
+        """Torsional constant divided by width thickness^3/3, which it approaches for large width."""
         return combine(_torsion_factor, self.width, self.thickness)[0]
 
     @cached_property
@@ -113,7 +113,7 @@ class Rectangle:
 
     @cached_property
     def twist_factor(self) -> Profile:
-        """Stiffness of the plate against twist over E I: 4 G/E times `torsion_factor`."""
+        """Torsional stiffness G J divided by E I: 4 G/E times `torsion_factor`."""
         return self.torsion_factor.scaled(2 / (1 + (self.poissons_ratio or 0.0)))
 
     @cached_property
@@ -137,7 +137,7 @@ class Rectangle:
 
     @cached_property
     def camber_stiffening(self) -> Profile:
-        """Bending stiffness of sections that cannot camber over that of free ones, 1/(1 - camber_ratio^2)."""
+        """Bending stiffness without camber, divided by that with free camber: 1/(1 - camber_ratio^2)."""
         return combine(lambda nu: 1 / (1 - nu**2)[None], self.camber_ratio)[0]
 
     @cached_property
@@ -147,7 +147,7 @@ class Rectangle:
         return _REACH_OF_WIDTH * b + _REACH_OF_THICKNESS * t
 
     def stiffening_across(self, length: float) -> Profile:
-        """Compute the bending stiffness along the width near a clamped root over that of free sections.
+        """Compute the stiffness for bending along the width, divided by that far from the clamped root.
 
         With Poisson's ratio nu it is 1 + nu^2 (1 - x/c)^2 within the clamp's reach c, which follows from the
         sides at the root and is at most 0.7 of the length [m] of the beam.
@@ -158,7 +158,7 @@ class Rectangle:
 
     @cached_property
     def warping_factor(self) -> Profile:
-        """Warping constant over width^3 thickness^3/144, that of a thin section; see `_warping_factor`."""
+        """Warping constant divided by that of a thin section, width^3 thickness^3/144: `_warping_factor`."""
         return combine(_warping_factor, self.width, self.thickness)[0]
 
     def kinks_of_width(self, length: float) -> np.ndarray:
@@ -194,7 +194,7 @@ def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
 
 
 def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Compute the warping function's mean square over b^2 t^2/144, for arrays of sides b >= t.
+    """Compute the warping function's mean square divided by b^2 t^2/144, for arrays of sides b >= t.
 
     The result has a further first axis. It is divided by 1 + 7 (t/b)^2, which was fitted to solids.
 
@@ -234,7 +234,7 @@ class Material(NamedTuple):
     permittivity: float
 
     def held_across(self, ratio: float) -> Material:
-        """Return the constants along the beam if the strain across is the same, from Poisson's ratio."""
+        """Return the constants for equal strains along and across the beam, from Poisson's ratio."""
         coupled = self.coupling**2 / self.stiffness
         permittivity = self.permittivity - coupled * (1 + ratio) / (1 - ratio)
         return Material(self.stiffness / (1 - ratio), self.coupling / (1 - ratio), permittivity)
@@ -268,8 +268,8 @@ class Laminate(Rectangle):
     along : Profile
         Poisson's ratio over x/L; under the layers the ratio D12/D11 of the plate's bending stiffnesses.
     free : Profile
-        Bending stiffness of a section that cambers freely, over that of the beam model, which neglects that
-        strip and layers have to camber together.
+        Bending stiffness of a section that cambers freely, divided by that of the beam model, which neglects
+        that strip and layers have to camber together.
     """
 
     along: Profile = ONE
@@ -282,13 +282,13 @@ class Laminate(Rectangle):
 
     @cached_property
     def twist_factor(self) -> Profile:
-        """Torsional stiffness of the plate over E I of the beam."""
+        """Torsional stiffness of the plate, divided by E I of the beam."""
         shear = combine(lambda nu, free: (2 * free / (1 + nu))[None], self.along, self.free)[0]
         return self.torsion_factor * shear
 
     @cached_property
     def camber_stiffening(self) -> Profile:
-        """Bending stiffness of the section that cannot camber over that of the beam."""
+        """Bending stiffness of the section that cannot camber, divided by that of the beam."""
         return combine(lambda nu, free: (free / (1 - nu**2))[None], self.camber_ratio, self.free)[0]
 
 

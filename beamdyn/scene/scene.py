@@ -308,11 +308,11 @@ def _check_large_deflection(scene: Scene) -> None:
         remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("harvester.resistance", scene.beam.electrodes.resistance, bound, remedy, "ohm")
     if scene.beam.point_springs:
-        bound = "with physics.large_deflection there are none: they would keep their direction"
+        bound = "with physics.large_deflection these are not modelled: they would keep their direction"
         remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     if scene.damping.tip_damper:
-        bound = "with physics.large_deflection there is none: the tip also moves along the beam"
+        bound = "with physics.large_deflection it is not modelled: the tip also moves along the beam"
         remedy = f"give damping.ratios, or {how_without_large_deflection(scene.beam)}"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
 
@@ -328,7 +328,7 @@ def how_without_large_deflection(beam: Beam) -> str:
 
 # Damper at the tip --------------------------------------------------------------------------------
 
-# Largest damper over sqrt(EI m / L^3): above, rounding errors exceed the decay rate of the tip.
+# Largest damper divided by sqrt(EI m / L^3): above, rounding errors exceed the decay rate of the tip.
 _MOST_DAMPING = 1e6
 
 
@@ -384,7 +384,7 @@ def _check_properties(beam: Beam, physics: Physics) -> None:
     raise InvalidValue(f"physics.{effect}", getattr(physics, effect), bound, remedy, other=first)
 
 
-# Lengths, over the local width, of segments at a clamped root that resolve the stresses in a plate's corners.
+# Lengths, in local widths, of segments at a clamped root that resolve the stresses in a plate's corners.
 _CORNERS = 0.2, 1.2
 # Largest x/L at which a segment near the root that resolves stresses in corners may end.
 _LAST_CORNER = 0.7

@@ -116,9 +116,9 @@ class TipInertia(NamedTuple):
     tilting : ndarray, shape (2, 2)
         Moment of inertia against rotation.
     centrifugal : ndarray, shape (2, 2)
-        Centrifugal stiffness against rotation out of the plane of rotation, over the squared speed; in the
-        axes of the section diag(J_e - J_1, J_n - J_1), with the moments of inertia J_1 about the beam, J_n
-        about the axis of bending, and J_e about the direction of bending.
+        Centrifugal stiffness against rotation out of the plane of rotation, divided by the squared speed;
+        in the axes of the section diag(J_e - J_1, J_n - J_1), with the moments of inertia J_1 about the beam,
+        J_n about the axis of bending, and J_e about the direction of bending.
     """
 
     tilting: np.ndarray

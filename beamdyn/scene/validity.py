@@ -26,9 +26,9 @@ LARGE_DEFLECTION = 0.1  # fraction of the length beyond which a linear theory ha
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
 # Acceleration of gravity [m/s2]: a wheel that a road accelerates by more loses contact.
 STANDARD_GRAVITY = 9.81
-_NARROW = 5.0  # width over thickness below which a section does not behave as a plate
+_NARROW = 5.0  # ratio of width to thickness below which a section does not behave as a plate
 _WORTH_OF_NARROW = 0.01  # largest relative frequency difference from narrow solid bodies: benchmarks.solids
-# Relative error of frequencies over the change of the width's slope (0.037 at most, in 36 tapered strips
+# Relative error of frequencies per change of the width's slope (0.037 at most, in 36 tapered strips
 # compared with strips with a rounded kink, in bending), and the error from which a warning is given.
 _WORTH_OF_KINKS, _SMALL_WORTH = 0.04, 1e-3
 # Relative distance of a width from a bound, up to which the width counts as at the bound.

@@ -242,7 +242,7 @@ def test_a_random_road_is_warned_of_and_refused_where_it_says_nothing(capsys, fi
     )
     assert "give --road" in finished(main([*given, "--highest", "5 1/m"]), 2).err
     assert main([*given, "--road", "A", "--highest", "10 1/m", "--csv", str(path)]) == 0
-    assert "On a random road, class A, up to 10 1/m" in capsys.readouterr().out
+    assert "Additionally on a random road, class A, up to 10 1/m" in capsys.readouterr().out
     head, first, _ = path.read_text(encoding="utf-8").splitlines()
     assert float(
         dict(zip(head.split(","), first.split(","), strict=True))["velocity_km_per_h"]
@@ -301,7 +301,7 @@ def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
     assert main(given) == 2 and "give --road" in capsys.readouterr().err
     assert main([*given, "--road", "A"]) == 0
     printed = capsys.readouterr().out
-    assert "On a random road, class A, up to 10 1/m" in printed
+    assert "Additionally on a random road, class A, up to 10 1/m" in printed
     assert " 1 mode," in " ".join(printed.split()) and "Resonances" not in printed  # at one speed
 
 

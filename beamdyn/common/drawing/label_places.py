@@ -55,7 +55,7 @@ class LabelRequest:
 
 
 class Place(NamedTuple):
-    """A placed label: centre (2,) and anchor (2,) [pt], distance between the two [pt], and cost [pt]."""
+    """A placed label: centre (2,), anchor (2,), distance of its box from it, and cost of the place [pt]."""
 
     centre: np.ndarray
     anchor: np.ndarray
@@ -253,7 +253,7 @@ class _Chosen:
         self._boxes[label] = self._leaders[label] = np.nan
 
     def in_the_way(self, label: int, count: int | None) -> np.ndarray:
-        """Return which of all labels collide with each of a label's first candidates (rows)."""
+        """Return which labels collide with each of a label's first `count` (None: all) candidates (rows)."""
         of = self._of[label]
         boxes = of.boxes[:count]
         found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)

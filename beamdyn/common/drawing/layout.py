@@ -30,7 +30,7 @@ _SMALL_DISC = 30.0  # largest radius of a disc whose label stands beside the dis
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
 # Points of a ground symbol that labels must not cover, in units of half its width and of its height.
 _MARKS = np.array([(0.0, 0.0), (0.0, -2 / 17), (0.0, 0.5), (-0.7, 0.9), (0.0, 0.9), (0.7, 0.9)])
-_PADDING = (4.0, 1.0)  # clearance around a measured text [pt]: letters are drawn with hinting and slant
+_PADDING = (4.0, 1.0)  # added to width and height of a text [pt], as hinting and slant widen letters
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Fit:
 
 
 class Text(NamedTuple):
-    """A placed text: centre, width and height of its box, lines, symbol, colour role and font size."""
+    """A placed text: centre and size of its box, lines, symbol before them, colour role, font size [pt]."""
 
     centre: np.ndarray
     size: tuple[float, float]
@@ -94,7 +94,7 @@ class Text(NamedTuple):
 
 
 class Rule(NamedTuple):
-    """A straight line on paper: its end points (2, 2), colour role and width."""
+    """A straight line on paper: its end points (2, 2) [pt], colour role and width [pt]."""
 
     ends: np.ndarray
     role: str
@@ -184,7 +184,7 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """Make a layout from the places of a drawing's labels; `held` is a transformation that must stay."""
+    """Make a layout from the places of a drawing's labels; its scale may shrink unless `held` is given."""
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -242,7 +242,7 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
 def _with_list(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
-    """Make texts and leader lines of labels; a label without a free place is numbered, and listed below."""
+    """Return the labels without a free place, which are listed below, texts, leader lines, and the scale."""
     listed, bottom, fit, places = _make_room(drawing, inner, fit, places, held)
     numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
     texts, rules = [], []
@@ -354,7 +354,7 @@ def round_below(value: float) -> float:
 
 
 def length_text(size: float) -> str:
-    """Format a length [m] in metres or millimetres."""
+    """Format a length [m] in metres, below 1 m in millimetres."""
     return f"{size:.4g} m" if size >= 1 else f"{1e3 * size:.4g} mm"
 
 

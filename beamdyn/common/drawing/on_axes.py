@@ -186,7 +186,7 @@ def plot_chart(ax: Axes, chart: Chart) -> Axes:
         ax.plot(x, y, "o", color=ink(points.role).line, markerfacecolor="white", label=points.name)
     colour_of = {curve.name: chosen for curve, chosen in zip(chart.curves, colours, strict=True)}
     across = ax.get_xaxis_transform()
-    for mark in chart.marks:  # a vertical line with its text, beside the bottom end or along the top end
+    for mark in chart.marks:  # a vertical line, its text at the top, or if `at_foot` at the bottom
         chosen = colour_of.get(mark.curve, _CURSOR)
         ax.axvline(mark.at, color=chosen, linewidth=1.2, linestyle=":" if mark.at_foot else "-.")
         height, place = (_GAP, _BESIDE) if mark.at_foot else (_BEHIND_LEGEND, _ALONG)

@@ -44,7 +44,7 @@ class Sketch:
         self.shapes += shapes
 
     def say(self, symbol: str, at: Any, towards: Point = (0.0, 0.0), role: str = "text") -> None:
-        """Write a symbol, such as "alpha1", beside one of several points."""
+        """Write a symbol, such as "alpha1", beside one of the points `at`, the first if there is space."""
         way = float(towards[0]), float(towards[1])
         self.labels.append(Label("", at, role, way, typeset(symbol), priority=1, size=_LETTERS))
 
@@ -66,7 +66,7 @@ class Sketch:
         self.say(symbol, middle, middle[0] - np.asarray(centre, dtype=float))
 
     def arrow(self, symbol: str, foot: Point, tip: Point, role: str = "load") -> None:
-        """Draw an arrow for a force or a direction of motion, with a symbol at the free end."""
+        """Draw an arrow for a force or a direction of motion, with a symbol beside its foot."""
         ends = np.array([foot, tip], dtype=float)
         self.add(Arrow(ends[0], ends[1], role, symbol, 1.8))
         self.say(symbol, np.stack([ends[0], ends.mean(axis=0)]), ends[0] - ends[1], role)

@@ -114,7 +114,7 @@ class Circle:
 
 
 class Letters(NamedTuple):
-    """A line of text: symbol before the text, centre of the baseline, font size and colour."""
+    """A line of text: symbol, text after it, centre of the baseline (x, y), font size [pt], colour."""
 
     symbol: str
     words: str

@@ -95,7 +95,7 @@ class MissingValue(InvalidValue):
 
 
 class CoreSection(Section):
-    """A table of a file that describes an object of the package; the object's errors are the table's."""
+    """A table of a file that describes an object of the package; errors of that are errors of the table."""
 
     @cached_property
     def core(self) -> Any:
@@ -243,7 +243,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
 
 
 def _place_in(field: str, key: str) -> str:
-    """Return the path of an input, extended by the end of a longer field name, such as ".values[1]"."""
+    """Return the path `key` of an input, extended by what `field` has in addition, such as ".values[1]"."""
     parts = (field.removeprefix(name) for name in wholes_of(field) if f".{key}".endswith(f".{name}"))
     if (part := next(parts, None)) is not None:
         return key + part
@@ -300,14 +300,14 @@ def _as_written(refusal: InvalidValue, given: Any) -> InvalidValue:
 
 
 def _path(loc: Iterable[int | str], indices: bool = True) -> str:
-    """Return the path of a key in TOML, without the labels that pydantic adds in angle brackets."""
+    """Return the path of a key in TOML, without pydantic's labels in <>, and with list `indices` or not."""
     keys = (part for part in loc if not str(part).startswith("<"))
     parts = [f".{key}" if isinstance(key, str) else f"[{key}]" * indices for key in keys]
     return "".join(parts).removeprefix(".")
 
 
 def _unknown(model: type[BaseModel], loc: tuple[int | str, ...]) -> str:
-    """Describe an unknown key: name its table, the most similar known key, or all known keys."""
+    """Describe an unknown key; name the table or kind that has it, else a similar key, else all keys."""
     table, key, known = _path(loc[:-1], indices=False), str(loc[-1]), describe(model)
     prefix = table and f"{table}."  # empty at the top level, so that every path begins with it
     inside = [i.path.removeprefix(prefix).partition(".")[0] for i in known if i.path.startswith(prefix)]
@@ -443,7 +443,7 @@ def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _key(name: str, hint: Any) -> str:
-    """Return the key of an argument: as described, or its name; "tip_x" and "tip_y" for a pair "tip"."""
+    """Return the key of an argument: the described one, else its name ("tip_x", "tip_y" for a pair)."""
     described = description(hint)
     return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 

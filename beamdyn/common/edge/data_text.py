@@ -455,7 +455,7 @@ def _read_row(
 
 
 def check_places(table: CsvTable, name: str) -> None:
-    """Raise an error if positions do not ascend; a repeated position must be a jump of other quantities.
+    """Raise an error if positions do not ascend; a position may occur twice, where another column jumps.
 
     Parameters
     ----------

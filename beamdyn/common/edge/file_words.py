@@ -67,7 +67,7 @@ def check_names(given: Sequence[str]) -> None:
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Return a sentence on words that belong to no option; often a blank separates number and unit."""
+    """Return a sentence on words that belong to no option; often a blank stands before a unit."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
@@ -76,7 +76,7 @@ def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
 
 
 def _with_meant_option(error: UnknownOptionError, given: Sequence[str]) -> str:
-    """Describe an unknown option; suggest a known one: by a synonym, or by the value typed after it."""
+    """Describe an unknown option; suggest one with the same meaning, else one that takes the typed value."""
     option = (error.token.keyword or error.token.value).partition("=")[0]
     if any(_OTHER_NAMES.get(option) == argument.name for argument in error.argument_collection):
         return f"Unknown option: {option}. Did you mean {_OTHER_NAMES[option]}?"

@@ -133,7 +133,7 @@ def chosen(outputs: Sequence[Output], names: str, option: str = "--what") -> lis
     Raises
     ------
     ValueError
-        If a name is unknown, or none is given; the message lists all names, or suggests a similar one.
+        If a name is unknown, or none is given; the message suggests a similar name, else lists all.
     """
     known = {output.name: output for output in outputs}
     wanted = [name.strip() for name in names.split(",") if name.strip()]

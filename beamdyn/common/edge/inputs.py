@@ -282,7 +282,7 @@ def parts_of(annotation: Any) -> Iterator[Any]:
 # Error messages in terms of input files ------------------------------------------------------------
 
 _SUSPECT = 12.0  # distance of a number from 1, in decades, above which its exponent may be mistyped
-_FAR = "far too large or too small beside the others: the results leave the range of numbers"
+_FAR = "far too large or too small compared with the others: the results leave the range of numbers"
 _CHECK = "check its exponent and its unit"
 
 

@@ -95,7 +95,7 @@ def in_haste(figure: Figure) -> Figure:
 
 
 def _kept(store: dict[tuple[object, ...], _T], known: tuple[object, ...], make: Callable[[], _T]) -> _T:
-    """Return what is stored of a picture; if nothing is, what `make` returns, which is then stored."""
+    """Return what `store` has under the key `known`; if nothing, store what `make` returns, and return it."""
     if known not in store:
         if len(store) >= _MOST_KEPT:
             store.clear()
@@ -273,7 +273,7 @@ def _cell(cell: object) -> str:
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    """Write a row in HTML; cells with long words may wrap."""
+    """Write a row in HTML; `words` says which cells hold words, of which long ones may wrap."""
 
     def kind(cell: str) -> str:
         return "words sentence" if len(cell) > _SENTENCE else "words bar" if cell[:1] == _BAR else "words"

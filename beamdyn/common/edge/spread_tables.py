@@ -98,7 +98,7 @@ def _heads(result: Spread) -> list[str]:
 
 
 def _ranges(result: Spread) -> Group:
-    """Make the table of nominal values, first-order ranges, and worst cases with their sources and errors."""
+    """Make the table of nominal values, first-order ranges, worst cases, how these were found, and errors."""
     first, found, rows = result.first_order, result.worst, []
     for k, head in enumerate(_heads(result)):
         wrong = _numerical(result, k)
@@ -153,7 +153,7 @@ def _inputs(result: Spread) -> Iterator[Group]:
                 total = _share(found.total[i, k], found.total_error[i, k])
                 row.append(f"{total} ({_share(found.first[i, k], found.first_error[i, k])})")
         heads = ("input", "value", "tolerance", *names[start : start + beside])
-        yield table("Share of the variance: with other inputs (alone)", heads, rows, (0, 2))
+        yield table("Share of the variance: with interactions (alone)", heads, rows, (0, 2))
 
 
 def _note(result: Spread) -> str:

@@ -179,7 +179,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """Describe an unknown name, and suggest the most similar known name, or list all names."""
+    """Describe an unknown name, and suggest the most similar of all names; if none is, list `names`."""
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"

@@ -57,7 +57,7 @@ def keep_checked(core: object) -> None:
     InvalidValue
         If a number is not finite, or outside the bounds of its description (pairs have no bounds).
     ValueError
-        If the shapes of the numbers do not broadcast, apart from fields that are lists.
+        If the shapes of the numbers do not broadcast; fields that are lists may have any length.
     """
     found: dict[str, Any] = {}
     for name, hint in described_hints(type(core)).items():

@@ -184,7 +184,7 @@ def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
 
 
 class _Tree(dict[Any, Any]):
-    """New values by the first step of their paths; values with longer paths are in nested trees."""
+    """New values by the key or index in a path of one step; for longer paths, a nested tree by the first."""
 
 
 def _steps(path: str) -> list[str | int]:

@@ -13,7 +13,7 @@ from beamdyn.common.results.columns import SI_UNITS, DisplayUnits, evenly_spread
 from beamdyn.common.results.pictures import COLOURS, Axes, Figure, add_legend, new_figure
 
 _MOST_CURVES = 8
-# Crosses that mark missing values: height of the lowest row, and row distance, over the height of the axes.
+# Crosses that mark missing values: height of the lowest row, and row distance, in heights of the axes.
 _LOWEST, _ROW = 0.02, 0.03
 _GREY = "0.5"
 _FEW = 4  # largest number of cases drawn as single lines along the span; of more cases a band is drawn
@@ -339,7 +339,7 @@ def plot_work_precision(
     from matplotlib.ticker import LogFormatterSciNotation
 
     class FewLabels(LogFormatterSciNotation):
-        """Labels minor ticks of a logarithmic axis; above half a decade, only 2 and 6 times powers of ten."""
+        """Labels minor ticks 2 and 6 times powers of ten; all if the axis limits have a ratio below 3."""
 
         def __call__(self, x: float, pos: int | None = None) -> str:
             assert self.axis is not None

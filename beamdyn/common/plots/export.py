@@ -74,7 +74,7 @@ def write_shapes(
     strip = _strip(x, width, shapes.shape[2])
     for label, deflection, sideways in zip(labels, shapes, aside, strict=True):
         name = label.replace(" ", "_") if kind == "vtk" else label
-        field = _displacement(deflection, len(strip.points), sideways)  # zeros stay zeros
+        field = _displacement(deflection, len(strip.points), sideways)
         strip.point_data[name] = field * (_DRAWN_RATIO * (x[-1] - x[0]) / (np.abs(field).max() or 1.0))
     with replacing(path) as aside:
         strip.write(aside, file_format=kind)
@@ -172,7 +172,7 @@ def animate(
     """
     x, t, deflection = _check_history(x, t, deflection)
     figure = note_below(new_figure(6.4, 3.6), notes)
-    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # [mm], in all frames
+    ax, reach = figure.subplots(), 1.1e3 * np.abs(deflection).max() or 1.0  # half the height of the axes [mm]
     ax.set(xlim=(0, 1e3 * x[-1]), ylim=(-reach, reach))
     ax.set(xlabel="position along the beam [mm]", ylabel="deflection [mm]")
     ax.grid(color="0.85", linewidth=0.7)

@@ -12,7 +12,7 @@ from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 
 _KM_PER_HOUR = 3.6  # factor from m/s to km/h
-_HEIGHT, _WIDTH, _ABOVE = 2.8, 4.2, 1.2  # size of a panel, and height of names at the top [inch]
+_HEIGHT, _WIDTH, _ABOVE = 2.8, 4.2, 1.2  # size of a panel, and height of the legend at the top [inch]
 _NARROWEST = 3.0  # least width of a panel if several are side by side [inch]
 
 

@@ -131,7 +131,7 @@ _TICKS = 6  # most steps between the numbers below a map, which may be long
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
 # The hatched region without results ends where the fraction of missing results, smoothed, is 1/2.
 _SMOOTHED = 1.0  # standard deviation of the Gaussian that smooths the fraction [grid steps]
-_APART = 0.02  # least distance of the smoothed fraction from 1/2 at grid points
+_APART = 0.02  # least distance of the fraction from 1/2 at grid points, so that the end lies between them
 _SAME = 1e-9  # relative range of the values below which they count as equal: no contour lines are drawn
 # Fraction of the smallest, and of the largest, values that do not influence the contour levels.
 _RARE = 0.04
@@ -376,7 +376,7 @@ def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def levels_of(known: np.ndarray) -> np.ndarray:
-    """Choose round contour levels between the extreme values: at equal steps, or 1, 2, 5, 10 over decades."""
+    """Choose round contour levels: at equal steps, or at 1, 2, 5, 10 if values extend over 1.5 decades."""
     from matplotlib.ticker import MaxNLocator
 
     # Contour levels disregard a few values that may lie far away from all others.

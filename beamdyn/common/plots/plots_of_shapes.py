@@ -15,7 +15,7 @@ from beamdyn.common.results.pictures import COLOURS, Axes, add_legend
 if TYPE_CHECKING:
     from matplotlib.contour import ContourSet
 
-_COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # colour map and contour levels
+_COLOURS_OF_SIGN, _LEVELS = "RdBu_r", np.linspace(-1, 1, 21)  # colours and contour levels of scaled shapes
 _FLAT = 1e-6  # relative deflection below which no nodal lines are drawn
 _ASIDE = 0.4  # largest drawn displacement across the width, as a fraction of the width
 _PAGE, _MARGIN = (6.5, 4.6), 0.45  # size of a page of panels, and distance between two panels [inch]

@@ -73,7 +73,7 @@ def plot_stability_chart(
 
 
 def _limit(first: np.ndarray, second: np.ndarray, grows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the line between stable and unstable grid points; its pieces are separated by nan."""
+    """Return the line halfway between points where the motion grows and others; nan separates pieces."""
     from contourpy import contour_generator
 
     if min(grows.shape) < 2:

@@ -120,7 +120,7 @@ class InDisplayUnits:
 
     @property
     def display_units(self) -> DisplayUnits:
-        """Return the units of tables, columns and pictures: chosen by `in_units`, or by the scene."""
+        """Return the units of tables, columns and pictures: chosen by `in_units`, else those of the scene."""
         given = vars(self).get("_display_units")
         return given or getattr(getattr(self, "scene", None), "units", SI_UNITS)
 

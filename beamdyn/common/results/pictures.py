@@ -214,7 +214,7 @@ def _place(mark: Artist) -> int | None:
 
 
 def _recolour(mark: Artist, moves: Mapping[int, int]) -> None:
-    """Change a mark's colour as `moves` maps indices of `COLOURS`; beyond the list, a line is dashed, too."""
+    """Change a mark's colour as `moves` maps indices of `COLOURS`; an index beyond it also dashes a line."""
     place, line = _place(mark), hasattr(mark, "get_linestyle")
     if place is None or place not in moves:
         return

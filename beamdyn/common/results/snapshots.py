@@ -55,7 +55,7 @@ def make_read_only(value: Any) -> Any:
 
 @cache
 def _public_fields(kind: type) -> tuple[str, ...]:
-    """List the names of the public fields of a dataclass, those by keyword last; none of another class."""
+    """List the names of the public fields of a dataclass, keyword-only ones last; empty for other classes."""
     every = dataclasses.fields(kind) if dataclasses.is_dataclass(kind) else ()
     return tuple(f.name for f in sorted(every, key=lambda f: f.kw_only is True) if f.repr)
 

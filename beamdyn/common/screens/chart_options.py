@@ -89,7 +89,7 @@ def options_of(chart: Chart) -> dict[str, Any]:
             "inactiveColor": _paint("ghost"),
             "data": [*lines, *({"name": each.name} for each in chart.points)],
         },
-        "tooltip": {  # shows the values of all curves at the pointer's x, or of one point if x is logarithmic
+        "tooltip": {  # values of all curves at the pointer's x; if x is logarithmic, of one point
             "trigger": "item" if chart.x.logarithmic else "axis",
             "renderMode": "richText",  # texts are not interpreted as HTML, so that names appear as they are
             "confine": True,

@@ -118,7 +118,7 @@ class _TableRow(NamedTuple):
 
 
 def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
-    """Choose how the rows of two tables are named: by texts, a common first number, or row number."""
+    """Choose how rows of two tables are named: by texts if unique, else a common first number, else count."""
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
     common = {row.place for row in here} & {row.place for row in there}

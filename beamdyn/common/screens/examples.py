@@ -49,7 +49,7 @@ def examples_of(program: Program) -> tuple[Example, ...]:
 
 
 def examples_folder() -> Path:
-    """Return the folder of examples of the installed package, or of the source tree."""
+    """Return the folder of examples in the installed package; if it has none, that of the source tree."""
     packed = Path(__file__).with_name("shipped_examples")
     return packed if packed.is_dir() else Path(__file__).parents[3] / "examples"
 
@@ -67,7 +67,7 @@ def _accepted(program: Program) -> Iterator[Example]:
 
 
 def _title(text: str, name: str) -> str:
-    """Return the first sentence of the comment at the start of a file, shortened; or the name of the file."""
+    """Return the first sentence of the comment at the start of a file, shortened; without one, its name."""
     lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
     words = _SENTENCE.split(" ".join(line.lstrip("# ") for line in lines))[0]
     if len(words) > _LONGEST:

@@ -154,7 +154,7 @@ def draw_sheet(
 
 
 def _with_first(rows: Rows, **changes: Any) -> Rows:
-    """Return rows of drawings in which the first drawing is replaced."""
+    """Return the rows with changed fields of their first drawing."""
     (first, *others), *more = rows
     return [[replace(first, **changes), *others], *more]
 
@@ -203,7 +203,7 @@ def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Se
 
 
 def _coordinates(text: str, entry: Input) -> Sequence[str]:
-    """Return the texts of a point's coordinates: the given ones, or the defaults."""
+    """Return the texts of a point's coordinates: those in a text, the defaults if it is empty, else ""."""
     if not text.strip() and isinstance(entry.default, tuple):
         return [f"{1e3 * value:.6g} mm" for value in entry.default]
     values = tables_of({"point": text}, ()).get("point")

@@ -59,7 +59,7 @@ class ItemRow:
             self._bin.props("flat dense round size=sm")
 
     def _make_field(self, cell: Cell) -> None:
-        """Make the field of a value: a selection list, or a text field that is read when it is left."""
+        """Make the field of a value: a list of its options; if none, a text field read when it is left."""
 
         def text() -> str:
             return next(each.text for each in self._item.cells if each.key == cell.key)

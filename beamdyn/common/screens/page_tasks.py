@@ -140,7 +140,7 @@ def _opened(document: Document, entries: form_entries.Entries) -> OpenDocument:
     return work
 
 
-# Reports --------------------------------------------------------------------------------------------------
+# HTML report on a design ----------------------------------------------------------------------------------
 
 
 def drawn(screen: Screen, answer: object, place: float) -> str:

@@ -41,7 +41,7 @@ class PageWriter:
         Changes of text, content, style, classes, attributes and field texts are written; changes of other
         properties are not.
         """
-        elements = tuple(e for e in elements if "update" not in vars(e))  # an outer context writes the others
+        elements = tuple(e for e in elements if "update" not in vars(e))  # without those of an outer context
         if not elements or not self.is_ahead:
             yield
             return

@@ -349,7 +349,7 @@ class ScreenView:
             panel.state()
 
     def _show_sentences(self, mistakes: dict[str, list[str]]) -> None:
-        """Show errors and the result's warnings; errors at fields only where the form is out of sight."""
+        """Show errors and the result's warnings; those of form fields are visible only if the form is not."""
         answered, fields = self._answered, self.form.fields
         each = [(said, path in fields) for path, sentences in mistakes.items() for said in sentences]
         sentences = [(said, "mistake") for said, at_field in each if not at_field]

@@ -251,7 +251,7 @@ def _ends(
         raise InvalidValue(name, text, "it must ascend", "give the smaller end first")
     rounding = 1e-12 * (abs(low) + abs(high))
     if not low - rounding <= nominal <= high + rounding:
-        bound = "the range does not hold the value itself, {limit}"
+        bound = "the range does not contain the nominal value, {limit}"
         raise InvalidValue(name, text, bound, "widen it, or change the value", unit, nominal)
     return low, high
 
@@ -260,7 +260,7 @@ def check_holds(given: SpreadInput) -> None:
     """Raise an error if the nominal value is outside the tolerance."""
     low, high = given.distribution.ends
     if not low <= given.nominal <= high:
-        bound = "it does not hold the value itself, {limit}"
+        bound = "it does not contain the nominal value, {limit}"
         remedy = "widen it, or change the value"
         raise InvalidValue(given.name, given.distribution, bound, remedy, given.unit, given.nominal)
 

@@ -118,7 +118,7 @@ def _one_plane(scene: Scene, plane: str) -> Scene:
 
 
 def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
-    """Return the tip body as it moves when the blade bends in one plane."""
+    """Return the tip body without offset across, its `inertia` about the axis of bending in a plane."""
     tip = tip and replace(tip, offset_across=0.0)
     if tip is None or plane == "flap":
         return tip
@@ -130,7 +130,7 @@ def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
 
 STEEP = 3.0  # smallest factor between neighbouring stations that is reported as a steep step
 _SUM_ERROR = 1e-3  # error of the sum of a mode shape's coefficients that ElastoDyn accepts
-_SHAPE_ERROR = 0.05  # difference of a mode shape, relative to its tip deflection, that causes a warning
+_SHAPE_ERROR = 0.05  # difference from the computed shape, at tip deflection 1, that causes a warning
 _STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
 _STEPPED_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}
 _STEPPED_NAMES |= {"second_bending_stiffness": "edge stiffness"}
@@ -331,8 +331,8 @@ def _warnings(shapes: tuple[ShapeCheck, ...]) -> list[str]:
         if abs(shape.coefficient_sum - 1) > _SUM_ERROR
     ]
     return wrong_sums + [
-        f"the deck's shape of {shape.mode} is {shape.difference:.2g} of the tip deflection off that of its "
-        f"stations, at x/L = {shape.place:.3g}"
+        f"the deck's shape of {shape.mode} is {shape.difference:.2g} of the tip deflection off that computed "
+        f"from its stations, at x/L = {shape.place:.3g}"
         for shape in shapes
         if shape.difference > _SHAPE_ERROR
     ]

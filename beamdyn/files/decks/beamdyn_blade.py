@@ -237,11 +237,11 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Raise an error for matrices not symmetric and positive definite, and masses of no rigid section."""
+    """Refuse matrices not symmetric and positive definite, and masses that no rigid section has."""
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
-        (least_eigenvalues(ours) <= LEAST, "a positive definite matrix: this section deforms by itself"),
+        (least_eigenvalues(ours) <= LEAST, "a positive definite matrix"),
     ]
     if name == "mass":
         wanted = (

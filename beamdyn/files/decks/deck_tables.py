@@ -58,7 +58,7 @@ def _shape_table(audit: DeckAudit) -> RenderableType:
         (s.mode, f"{s.coefficient_sum:.6f}", f"{s.difference:.4f}", f"{s.place:.3f}", f"{s.frequency:.5g}")
         for s in audit.shapes
     ]
-    title = f"Mode shapes of the deck beside those of its stations, without twist, {speed}; tip deflection 1"
+    title = f"Mode shapes of the deck and those computed without twist, {speed}; tip deflection 1"
     return table(title, heads, rows)
 
 

@@ -142,7 +142,7 @@ def read_blade_file(text: data_text.DataText, length: float, hub_radius: float) 
     damping = numbers(*_DAMPING) / 100
     # Description of the file: its second line; in FAST 7, the line below two lines of dashes.
     plain = (line.strip() for line in text.lines[:4] if not line.startswith("--"))
-    # Factor for each column, which must be positive.
+    # Factor that the file states for each column; it must be positive.
     factors = {}
     for name, column in _FACTORS.items():
         named = found[data_text.plain_name(name)]

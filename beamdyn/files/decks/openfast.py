@@ -10,7 +10,7 @@ from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.decks.elastodyn import named_file
 
 _ELASTODYN, _BEAMDYN = 1, 2  # values of the setting CompElast; 3 is a simplified ElastoDyn
-_NO_TIP_MASS = "OpenFAST leaves it out where BeamDyn computes the blades; tip in [beam] has a body there"
+_NO_TIP_MASS = "OpenFAST leaves it out where BeamDyn computes the blades; to include it, give tip in [beam]"
 
 
 def read_openfast_file(text: DataText) -> Blade:
@@ -22,7 +22,7 @@ def read_openfast_file(text: DataText) -> Blade:
         main = read_data(named_file(text, found["bdbldfile1"]))
         blade = beamdyn_blade.read_main_file(main, rotor.hub_radius)
         kept = {name: getattr(rotor, name) for name in ("pitch", "precone", "speed")}
-        mass = rotor.tip.get("mass", 0.0)  # ElastoDyn sets it to 0 if BeamDyn computes the blades
+        mass = rotor.tip.get("mass", 0.0)  # left out by OpenFAST if BeamDyn computes the blades
         ignored = (*blade.ignored, *ignore("TipMass(1)", mass, "kg", _NO_TIP_MASS))
         return replace(blade, sources=(text.path, rotor.sources[0], *blade.sources), ignored=ignored, **kept)
     reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"

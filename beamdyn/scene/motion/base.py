@@ -219,7 +219,7 @@ def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
 _SAMPLES = 1000  # number of times at which functions are compared with their derivatives
 _STEP = 1e-7  # step of the finite differences, relative to the interval
 _ZOOMS = 3  # number of refinements of a step whose values do not fit, before the step is reported as a jump
-_MISFIT = 1e-6  # allowed misfit, relative to the largest derivative
+_MISFIT = 1e-6  # allowed error of a given derivative, relative to its largest value
 
 
 def check_picklable(motion: Motion) -> None:
@@ -322,8 +322,8 @@ def _find_worst_step(t: np.ndarray, f: np.ndarray, df: np.ndarray) -> tuple[floa
     """Find the step of f that differs most from the integral of df: misfit above tolerance, misfit, index."""
     step = np.diff(t)
     misfit = abs(np.diff(f) - step * (df[1:] + df[:-1]) / 2)
-    # If df is monotone, the error of the trapezoidal rule is at most half of this value.
     rounding = 16 * np.finfo(float).eps * (abs(f).max() + t[-1] * abs(df).max())
+    # If df is monotone, the error of the trapezoidal rule is at most half of the first term.
     allowed = step * abs(np.diff(df)).max() + rounding
     k = int((misfit - allowed).argmax())
     return float(misfit[k] - allowed[k]), float(misfit[k]), k

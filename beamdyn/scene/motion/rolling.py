@@ -158,7 +158,7 @@ class RollingWheel(TurningMotion):
 
     @property
     def road_multiple(self) -> float | None:
-        """Number of waves of the road per turn, 2 pi times rolling radius over wavelength; None if flat."""
+        """Number of waves of the road per turn, 2 pi rolling_radius / wavelength; None if flat."""
         return None if self.road is None else self.rolling_radius * self.road.wavenumber
 
     @property

@@ -184,7 +184,7 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
 
 
 def _scale(equations: Equations, period: float) -> np.ndarray:
-    """Return factors of the state (q, q'): for q the frequency at rest, or 2 pi/period where it is 0; for q' 1.
+    """Return factors of the state (q, q'): of q the frequency at rest, or 2 pi/period where it is 0; of q' 1.
 
     Rounding gives the free turn of a hinged beam a tiny frequency, which counts as 0.
     """
