@@ -284,7 +284,7 @@ class _Block:
 
 
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Multiply each polynomial T with each monomial, row by row: these are the weights of `values`."""
+    """Multiply each polynomial in T by each monomial, row by row: the weights for a sum of `values`."""
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
 
 

@@ -345,7 +345,7 @@ class BrakeType(ABC, Generic[FileModel]):
         texts : sequence of str
             Inputs and their values, such as "stop.speed=10:30:9 km/h".
         results : str, optional
-            Names of outputs, separated by commas.
+            Names of outputs, separated by commas; by default `default_results`.
         options : pair of str
             Names of the options that give inputs and results, for messages.
         combine : {"product", "zip"}
@@ -358,14 +358,14 @@ class BrakeType(ABC, Generic[FileModel]):
         sweep : BrakeSweep
             The results of all designs.
         warnings : sequence of str
-            Which designs have no answer and why, and other remarks.
+            Which designs have no result and why, and other remarks.
 
         Raises
         ------
         ValueError
             If an input or a result is not known, an input is given twice, or there are too many designs.
         NoAnswer
-            If no design has an answer.
+            If no design has a result.
         """
         start, design = perf_counter(), self.read(tables, source)
         wanted = chosen(

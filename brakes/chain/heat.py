@@ -136,11 +136,11 @@ def heat_of_stop(
     stop : Stop
         The stop.
     drums : Drums, optional
-        The drums that are heated.
+        The drums that are heated; without them temperature rise and `lining_pv` are nan.
     normal_force : float or ndarray, optional
-        Sum of the normal forces of the linings of one brake on its drum, at full force [N].
+        Sum of the normal forces of the linings of one brake on its drum, at full force [N], for `lining_pv`.
     drum_radius : float or ndarray, optional
-        Radius at which the linings rub [m].
+        Radius at which the linings rub [m], for `lining_pv`.
 
     Returns
     -------

@@ -78,7 +78,7 @@ QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuanti
 
 
 _DRIVER = Field(
-    description="load that drives a mechanism without [caliper]; with friction, its motion is squeezing"
+    description="load that drives a mechanism without [caliper]; with friction, motion along it is squeezing"
 )
 _FRICTION = Quantity("", "mu", "friction of the pins that have none of their own", least=0, most=10)
 _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]

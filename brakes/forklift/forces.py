@@ -167,7 +167,7 @@ def internal_forces(
         Friction of the lining. Without a torque, it determines the torque; with one, it is compared
         with the friction that the torque needs.
     clearance : float or ndarray, optional
-        Clearance between lining and drum at rest [m].
+        Clearance between lining and drum at rest [m], for a `DuoServo` only.
 
     Returns
     -------
