@@ -376,7 +376,7 @@ def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def levels_of(known: np.ndarray) -> np.ndarray:
-    """Choose round contour levels: at equal steps, or at 1, 2, 5, 10 if values extend over 1.5 decades."""
+    """Choose round contour levels: at 1, 2, 5 times powers of ten over 1.5 decades, else at equal steps."""
     from matplotlib.ticker import MaxNLocator
 
     # Contour levels disregard a few values that may lie far away from all others.

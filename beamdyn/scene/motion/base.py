@@ -218,7 +218,9 @@ def as_breakpoints(times: Sequence[float]) -> tuple[float, ...]:
 
 _SAMPLES = 1000  # number of times at which functions are compared with their derivatives
 _STEP = 1e-7  # step of the finite differences, relative to the interval
-_ZOOMS = 3  # number of refinements of a step whose values do not fit, before the step is reported as a jump
+# Number of refinements of a step over which a function differs from the integral of its derivative, before
+# the step is reported as a jump.
+_ZOOMS = 3
 _MISFIT = 1e-6  # allowed error of a given derivative, relative to its largest value
 
 

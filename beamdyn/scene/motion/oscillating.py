@@ -40,7 +40,7 @@ class PulsatingRotation(Rotation):
     speed : float
         Mean speed omega [rad/s].
     fluctuation : float
-        Amplitude e of the speed, divided by the mean speed.
+        Amplitude e of the speed, relative to the mean speed.
     frequency : float
         Frequency f of the fluctuation [Hz].
 
@@ -57,7 +57,7 @@ class PulsatingRotation(Rotation):
     """
 
     speed: Annotated[float, Described("rad/s", "omega", "mean angular speed of the carrier")]
-    fluctuation: Annotated[float, Described("", "e", "amplitude of the speed, divided by its mean")]
+    fluctuation: Annotated[float, Described("", "e", "amplitude of the speed, relative to its mean")]
     frequency: Annotated[float, Described("Hz", "f", "frequency of the fluctuation", above=0)]
 
     no_steady_state: ClassVar[str] = _NEVER_STEADY
