@@ -338,8 +338,8 @@ def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
 def electrodes_of(scene: Scene) -> Electrodes:
     """Return the electrodes of the beam; refuse a beam that has none."""
     if scene.beam.electrodes is None:
-        remedy = Words(Named("Harvester.on(beam) puts them on", "a table [harvester] puts them on"))
-        raise InvalidValue("harvester", None, "the beam carries no piezoelectric layers", remedy)
+        remedy = Named("Harvester.on(beam) puts them on", "a table [harvester] puts them on")
+        raise ValueError(Words("the beam carries no piezoelectric layers; ", remedy))
     return scene.beam.electrodes
 
 
