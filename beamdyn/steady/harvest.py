@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.harvests import HarvestPanel, panel_size, plot_harvest, plot_harvest_panels
 from beamdyn.common.results.one_line import error_at_most, number, states, warned
