@@ -27,7 +27,7 @@ def _solution_tables(found: Solutions) -> Group:
     """Tabulate the solutions of an inverse question, with the ranges that show that there are no others."""
     heads = [f"{name} [{unit}]" if unit else name for name, unit in found.named]
     columns = (f"{found.input} from", "to", found.output, "from", "to")
-    ends = ([f"{each:.6g}" for each in (p.start, p.end, p.first, p.last)] for p in found.pieces)
+    ends = ([f"{p.start:.6g}", f"{p.end:.6g}", *p.shown_ends] for p in found.pieces)
     courses = ([a, b, p.course, c, d] for p, (a, b, c, d) in zip(found.pieces, ends, strict=True))
     gaps = ([f"{gap.start:.6g}", f"{gap.end:.6g}", "none", "-", "-"] for gap in found.gaps)
     title = f"Course of {heads[1]} over {heads[0]}, by {len(found.samples)} samples"

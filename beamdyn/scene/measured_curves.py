@@ -13,6 +13,7 @@ import numpy as np
 
 from beamdyn.common.inputs import checks
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.snapshots import ReadOnlyArrays
 from beamdyn.scene.measured_frequencies import set_doubts, table_of
 
@@ -292,7 +293,8 @@ class MeasuredResponse(MeasuredCurves):
             given["phase"] = checks.real_array("phase", self.phase)
         for name, value in given.items():
             if len(value) != len(given["frequency"]):
-                bound = f"there are {len(value)} for {len(given['frequency'])} frequencies"
+                frequencies = counted(len(given["frequency"]), "frequency", "frequencies")
+                bound = f"there are {len(value)} for {frequencies}"
                 raise InvalidValue(name, value, bound, "give one for each frequency")
         size = given["magnitude"]
         checks.refuse(

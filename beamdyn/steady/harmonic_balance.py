@@ -128,10 +128,10 @@ def _assemble(
     D = ((T.conj().T * 1j) @ (h.T[:, :, None] * T)).real  # matrices of d/dtheta and d/dchi, shape (2, H, H)
     rate = np.einsum("sp,pab->sab", system.rates, D)
     if C.any():
-        A += np.einsum("sab,sij->saibj", rate, C)
+        _add_products(A, rate, C)
     for order, spectrum, matrix in system.varying:
         R = np.real(T.conj().T @ convolution_matrix(spectrum, harmonics) @ T)
-        A += np.einsum("sab,sij->saibj", R @ rate if order else R, matrix)
+        _add_products(A, R @ rate if order else R, matrix)
     load = sum(
         (select_harmonics(f, h)[..., None] * vector[:, None] for f, vector in system.loads),
         np.zeros((S, H, n)),
@@ -141,6 +141,12 @@ def _assemble(
         speed, place = np.nonzero(free.reshape(S, H * n))
         A[speed, place, place] = 1.0
     return A, np.real(T.conj().T @ load).reshape(S, H * n)
+
+
+def _add_products(A: np.ndarray, factors: np.ndarray, matrices: np.ndarray) -> None:
+    """Add matrices (S, n, n) times a factor for each pair of harmonics (S, H, H), most of which are 0."""
+    row, column = np.nonzero(factors.any(axis=0))
+    A[:, row, :, column] += factors[:, row, column].T[..., None, None] * matrices
 
 
 # Series of interactions ----------------------------------------------------------------------------

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.harvests import HarvestPanel, panel_size, plot_harvest, plot_harvest_panels
 from beamdyn.common.results.one_line import error_at_most, number, states, warned
@@ -338,8 +337,8 @@ def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
 def electrodes_of(scene: Scene) -> Electrodes:
     """Return the electrodes of the beam; raise `InvalidValue` if it has none."""
     if scene.beam.electrodes is None:
-        remedy = Words(Named("Harvester.on(beam) puts them on", "a table [harvester] puts them on"))
-        raise InvalidValue("harvester", None, "the beam carries no piezoelectric layers", remedy)
+        remedy = Named("Harvester.on(beam) puts them on", "a table [harvester] puts them on")
+        raise ValueError(Words("the beam carries no piezoelectric layers; ", remedy))
     return scene.beam.electrodes
 
 

@@ -15,7 +15,7 @@ Mathematical Software 21.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby, pairwise
 from typing import Any
 
@@ -34,6 +34,8 @@ _JUMP = 1e-6
 _TURN = 1e-9
 # Relative width of the bracket of the last input with an answer, or of the end of a level part of the answer.
 _EDGE = 1e-13
+# Distance from the end of a piece, over that bracket, within which the answer's change counts as its error.
+_ROUNDED_ENDS = 4
 # Parts into which each refinement divides the bracket of a turning point, and of an edge.
 _PARTS, _FEW_PARTS = 16, 4
 _DOUBLED = 4  # largest number of times that the samples are doubled
@@ -107,7 +109,7 @@ def find(
         values=values,
         ranges=ranges,
         residuals=answers(values) - target,
-        pieces=tuple(map(_piece, pieces)),
+        pieces=tuple(_piece_with_errors(answers, piece) for piece in pieces),
         gaps=tuple(_gaps(answers, x, runs)),
         jumps=jumps,
         samples=x,
@@ -266,6 +268,14 @@ def _courses_as_they_are(run: _Run) -> Iterator[Piece]:
 def _piece(curve: Curve) -> Piece:
     x, y = curve
     return Piece(*map(float, (x[0], x[-1], y[0], y[-1])))
+
+
+def _piece_with_errors(answers: _Answers, curve: Curve) -> Piece:
+    """Make a piece whose answers change by their errors when its ends move inwards by their rounding."""
+    made, width = _piece(curve), _ROUNDED_ENDS * _EDGE * float(np.abs(curve[0]).max())
+    moved = answers(np.array([min(made.start + width, made.end), max(made.end - width, made.start)]))
+    first, last = np.abs(moved - [made.first, made.last]).tolist()
+    return replace(made, first_error=first, last_error=last)
 
 
 def _run_as_it_is(x: np.ndarray, y: np.ndarray, run: slice) -> _Run:

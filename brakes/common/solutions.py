@@ -10,6 +10,7 @@ import numpy as np
 from beamdyn.common.results.one_line import number
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance, Result
+from beamdyn.common.words import supported
 
 _LEVEL = 1e-12  # relative difference of two answers that counts as rounding
 
@@ -23,6 +24,17 @@ def step(first: np.ndarray | float, last: np.ndarray | float, part: float = 1.0)
     return np.sign(np.where(np.abs(np.subtract(last, first)) <= size, 0.0, np.subtract(last, first)))
 
 
+# Ratios of an answer to its error below which not even the first digit is sure, and above which six are.
+_UNSURE, _SURE = 5, 2e6
+
+
+def tell(answer: float, error: float) -> str:
+    """Format an answer with the digits that its error supports; "about 6e+14" if none of them is sure."""
+    if answer and abs(answer) <= _UNSURE * error:
+        return f"about {answer:.0e}"
+    return f"{answer:.6g}" if abs(answer) >= _SURE * error else supported(answer, error, 6)
+
+
 @dataclass(frozen=True)
 class Piece:
     """A range of inputs over which the answer rises, falls or is level.
@@ -33,12 +45,21 @@ class Piece:
         Ends of the range.
     first, last : float
         Answers at `start` and at `end`.
+    first_error, last_error : float
+        How much these answers change by a change of the input within its rounding: much beside a pole.
     """
 
     start: float
     end: float
     first: float
     last: float
+    first_error: float = 0.0
+    last_error: float = 0.0
+
+    @property
+    def shown_ends(self) -> tuple[str, str]:
+        """Texts of the answers at both ends, with the digits that are sure."""
+        return tell(self.first, self.first_error), tell(self.last, self.last_error)
 
     @property
     def course(self) -> str:
@@ -178,15 +199,17 @@ class Solutions(Result):
 
     def _extremes(self) -> Iterator[str]:
         """Yield the answers nearest to the wanted value, below and above, and the inputs that give them."""
-        ends = [each for p in self.pieces for each in ((p.first, p.start), (p.last, p.end))]
+        pieces = self.pieces
+        ends = [e for p in pieces for e in ((p.first, p.start, p.first_error), (p.last, p.end, p.last_error))]
         if step(min(ends)[0], max(ends)[0]) == 0:
             yield f"{self.output} is {self._output(ends[0][0])} whatever {self.input} is"
             return
         below, above = ([end for end in ends if sign * (end[0] - self.target) > 0] for sign in (-1, 1))
         for words, nearest in (("at most", max(below, default=None)), ("at least", min(above, default=None))):
             if nearest is not None:
-                value, at = nearest
-                yield f"{self.output} is {words} {self._output(value)}, at {self._places(value, at)}"
+                value, at, error = nearest
+                size = f"{tell(value, error)} {self.output_unit}".rstrip()
+                yield f"{self.output} is {words} {size}, at {self._places(value, at)}"
 
     def _places(self, value: float, at: float) -> str:
         """State where the answer has a value: at one input, or over the range in which it is level."""

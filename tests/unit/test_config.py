@@ -218,6 +218,8 @@ def test_stations_beside_other_keys():
         ((0, 2), "twist", '[0][2] = "twist": give "twist [deg]"'),
         ((0, 2), "twist [m]", '[0][2] = "twist [m]": give "twist [deg]"'),
         ((0, 2), "Twist [deg]", '[0][2] = "Twist [deg]": unknown column; did you mean twist?'),
+        ((0, 2), "K61 [N m]", '[0][2] = "K61 [N m]": unknown column; did you mean K16?'),
+        ((0, 2), "K67 [N m]", '[0][2] = "K67 [N m]": unknown column; known are x/L, x, '),
         ((0, 2), 5, "[0][2] = 5: unknown column; known are x/L, x, twist, sweep, prebend, width, thick"),
         ((0, 0), "x/L [m]", '[0][0] = "x/L [m]": give it without a unit, "x/L"'),
         ((0, 0), "x", '[0][0] = "x": give "x [mm]"'),

@@ -249,3 +249,19 @@ def test_options_that_do_not_go_together(options, said, capsys):
     code, _, err = run(capsys, "disc", "examples/disc.toml", *options)
     assert code == 2
     assert said in err
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_beside_a_pole_only_sure_digits_are_shown(power):
+    """The answer at the last input before the pole is by the rounding of the input alone."""
+    found = brakes.find(lambda x: np.where(x < np.pi, 1 / np.abs(np.pi - x) ** power, np.nan), 0.1, SAMPLES)
+    (piece,) = found.pieces
+    first, last = piece.shown_ends
+    assert float(first) == pytest.approx(piece.first, rel=5e-6) and last.startswith("about ")
+    high = brakes.find(lambda x: np.where(x < np.pi, 1 / (np.pi - x), np.nan), 1e30, SAMPLES)
+    assert "answer is at most about " in high.message
+
+
+def test_ends_that_the_input_hardly_moves_have_all_their_digits():
+    (piece,) = brakes.find(lambda x: 123.4567891 * x, 200.0, SAMPLES).pieces
+    assert piece.shown_ends == ("61.7284", "617.284")

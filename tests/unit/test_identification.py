@@ -192,3 +192,10 @@ def test_a_beam_that_bends_far_is_compared_without_explanations():
     )
     found = bd.compare(scene, bd.MeasuredFrequencies([50.0], uncertainty=0.1))
     assert found.verdict == ("outside",) and found.explanations == ()
+
+
+def test_one_frequency_is_counted_in_the_singular():
+    one = bd.MeasuredFrequencies(speeds=[0.0], frequency=[[10.0]])
+    free = dict.fromkeys(("beam.thickness", "beam.width"))
+    with pytest.raises(ValueError, match="there are 2 unknowns for 1 frequency; free fewer"):
+        bd.identify(bd.Scene(bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)), one, free=free)

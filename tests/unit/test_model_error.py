@@ -272,6 +272,11 @@ def test_warning_above_one_percent_or_the_tolerance() -> None:
     assert text == ("the model error, 0.6 %, exceeds 0.1 %: a, left out, changes the answer by +0.6 %; why")
 
 
+def test_a_warning_tells_the_model_error_from_its_limit() -> None:
+    (text,) = LeftOutEffects({"a": np.array([0.010002])}, {}, {}, (), {}).warnings()
+    assert text.startswith("the model error, 1.0002 %, exceeds 1 %: ")
+
+
 def test_an_unknown_effect_does_not_silence_a_large_one() -> None:
     changes = {"large deflection": np.array([0.3, 0.1]), "shear": np.array([np.nan, 1e-5])}
     effects = LeftOutEffects(changes, {"shear": "another mode"}, {}, (), {}, (2,))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -64,12 +64,21 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
     return columns
 
 
+def _similar(name: str, known: Iterable[str]) -> list[str]:
+    """Find the most similar known name, if any; other digits are another quantity, if not just swapped."""
+    letters, swapped = name.rstrip("0123456789"), re.sub(r"(\d)(\d)$", r"\2\1", name)
+    others = [
+        each for each in known if each == swapped or not letters or each.rstrip("0123456789") != letters
+    ]
+    return difflib.get_close_matches(name, others, n=1)
+
+
 def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[str, str]:
     """Read the name and the unit of a column from its heading."""
     match = _HEAD.fullmatch(head) if isinstance(head, str) else None
     name = match[1] if match else ""
     if match is None or name not in known:
-        near = difflib.get_close_matches(name, known, n=1)
+        near = _similar(name, known)
         remedy = f"did you mean {near[0]}?" if near else f"known are {', '.join(known)}"
         raise InvalidInput(place, head, "unknown column", remedy)
     unit, wanted = (match[2] or "").strip(), known[name].unit

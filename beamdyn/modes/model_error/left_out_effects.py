@@ -14,7 +14,7 @@ from beamdyn.common.inputs.checks import set_fields
 from beamdyn.common.results.result import plain
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import MODEL_ERROR, Speeds, Statement, joined
-from beamdyn.common.words import Words, percent
+from beamdyn.common.words import Words, percent, told_from
 from beamdyn.scene.physics import OfChosenPhysics
 from beamdyn.scene.validity import list_speeds
 
@@ -219,7 +219,9 @@ class LeftOutEffects:
         if at_least > limit:
             begin = (where, " the model error") if where else ("the model error",)
             partial = np.isnan(self.total[self.total_of_known == at_least]).any()
-            size = f"{'at least ' if partial else ''}{say_size(at_least)}, exceeds {say_size(limit)}"
+            shown, bound = say_size(at_least), say_size(limit)
+            shown = f"{told_from(100 * at_least, 100 * limit)} %" if shown == bound else shown
+            size = f"{'at least ' if partial else ''}{shown}, exceeds {bound}"
             largest = max(self.changes, key=lambda name: np.abs(np.nan_to_num(self.changes[name])).max())
             change, how = say_change(_largest(self.changes[largest])), self.reasons.get(largest, "")
             assumed = f" ({self.assumed[largest]})" if largest in self.assumed else ""

@@ -14,7 +14,7 @@ import numpy as np
 from scipy import special  # scipy.stats has these functions too, but its import takes long
 
 from beamdyn.common.inputs.checks import InvalidValue, count, kind
-from beamdyn.common.results.one_line import number
+from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import INPUT, LIMITS, Speeds, Statement
 from beamdyn.common.words import Words
@@ -86,7 +86,8 @@ def identify(
     kind("data", data, MeasuredFrequencies, "read a file by bd.read_measurements")
     numbers = free_numbers(scene, free)
     if data.count < len(numbers):
-        bound = f"there are {len(numbers)} unknowns for {data.count} frequencies"
+        measured = counted(data.count, "frequency", "frequencies")
+        bound = f"there are {counted(len(numbers), 'unknown')} for {measured}"
         raise InvalidValue("free", ", ".join(free), bound, "free fewer, or measure more")
     known = bool(np.isfinite(data.uncertainty[np.isfinite(data.frequency)]).all())
     fitting = Fitting(scene, data, numbers, data.uncertainty if known else data.frequency)
