@@ -8,12 +8,13 @@ from typing import TypeAlias
 
 import numpy as np
 
-from beamdyn.accuracy.refinement import LINEAR_MESHES, LINEAR_MODES, refine
+from beamdyn.accuracy.refinement import BASES_OF_PLATES, LINEAR_MESHES, LINEAR_MODES, refine
 from beamdyn.common.inputs.checks import InvalidValue, count, real, within
 from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION
+from beamdyn.equations.fewer_across import FewerAcross
 from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.discretization_choice import (
@@ -304,6 +305,11 @@ def _with_error(
         value
     ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
     error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
+    if model.scene.models_width:  # meshes, and the largest bases, differ along the beam alone
+        narrow = Model(model.model.scene, FewerAcross(model.discretization))
+        error = error + BASES_OF_PLATES.factor * np.abs(
+            evaluate(ModelAtSpeed(narrow, model.speed, model.modes)) - value
+        )
     truncation, compared = np.zeros(()), [str(coarse.discretization)]
     if model.modes is not None and larger is None:
         truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]

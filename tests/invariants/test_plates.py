@@ -344,3 +344,15 @@ def test_modes_that_are_not_listed_are_said_of_loaded_results_too(tmp_path):
     assert "modes not listed: torsion 656 Hz" in said
     modes.save(tmp_path / "modes.json")
     assert bd.load(tmp_path / "modes.json").left_out_effects.sentence() == said
+
+
+def test_the_error_of_a_response_has_a_part_by_functions_across(monkeypatch):
+    """Meshes differ along the strip alone, as do bases with the most functions across: here 6."""
+    strip = bd.Beam.rectangular(0.5, 0.1, 0.01, poissons_ratio=0.3, **STEEL)
+    scene = bd.Scene(strip, bd.Mount(0.1, OUT, 0.3), damping_ratio=0.01, physics=bd.Physics(camber=True))
+    ask = {"speed": 60.0, "frequencies": [25.0, 60.0], "modes": 4}
+    best = bd.frequency_response(scene, **ask, discretization=bd.Ritz(16))
+    monkeypatch.setattr("beamdyn.equations.ritz._MOST_ACROSS", 6)
+    found = bd.frequency_response(scene, **ask, discretization=bd.Ritz(14))
+    assert (np.abs(found.response - best.response) <= found.error + best.error).all()
+    assert found.error.max() < 1e-2 * np.abs(found.response).max()

@@ -1,0 +1,99 @@
+"""A discretization with fewer functions across the width of plates than another, to estimate its error."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from beamdyn.equations.discretization import Cells, Discretization, RootConditions, Space, Spaces
+from beamdyn.scene.beam import Beam
+from beamdyn.scene.profile import Profile
+
+_FEWER = 2  # one of torsion, and one of camber
+
+
+@dataclass(frozen=True)
+class FewerAcross:
+    """Discretization with the functions of another along the beam, and two fewer across its width.
+
+    Parameters
+    ----------
+    whole : Discretization
+        The other discretization.
+    """
+
+    whole: Discretization
+
+    @property
+    def order(self) -> int | None:
+        """Order of convergence of eigenvalues along the beam: see `Discretization`."""
+        return self.whole.order
+
+    @property
+    def converges_regularly(self) -> bool:
+        """Whether the changes of an eigenvalue decrease steadily from refinement to refinement."""
+        return self.whole.converges_regularly
+
+    @property
+    def rounding(self) -> float:
+        """Relative rounding error of eigenvalues that is caused by the integrals."""
+        return self.whole.rounding
+
+    def spaces(self, beam: Beam) -> SpacesOfFewer:
+        """Build the function spaces on a beam, one for each kind of boundary condition."""
+        return SpacesOfFewer(self.whole.spaces(beam))
+
+    def cells(self, beam: Beam) -> Cells:
+        """Divide a beam into cells on which the functions are smooth."""
+        return self.whole.cells(beam)
+
+    def coarser(self) -> FewerAcross:
+        """Return a discretization that is coarser along the beam."""
+        return FewerAcross(self.whole.coarser())
+
+    def finer(self) -> FewerAcross | None:
+        """Return a discretization that is finer along the beam; None if there is none."""
+        finer = self.whole.finer()
+        return None if finer is None else FewerAcross(finer)
+
+    def fits(self, modes: int) -> bool:
+        """Return whether even the coarser discretization has enough functions for a number of modes."""
+        return self.whole.fits(modes)
+
+
+@dataclass(frozen=True)
+class SpacesOfFewer:
+    """Function spaces with two functions fewer across than others.
+
+    Parameters
+    ----------
+    whole : Spaces
+        The other function spaces.
+    """
+
+    whole: Spaces
+
+    def functions(self, conditions: RootConditions) -> Space:
+        """Build trial functions that satisfy conditions at the root."""
+        return self.whole.functions(conditions)
+
+    def product(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
+    ) -> np.ndarray:
+        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        return self.whole.product(weight, rows, columns, orders)
+
+    @property
+    def across(self) -> int:
+        """Number of functions across the width of a plate, without the constant one."""
+        return max(2, self.whole.across - _FEWER)
+
+    @property
+    def fewer_across(self) -> int:
+        """Number of functions across the width of a plate in the coarser discretization."""
+        return max(2, self.whole.fewer_across - _FEWER)
+
+    def shares_functions(self, other: SpacesOfFewer) -> bool:
+        """Whether other spaces have the same functions, whatever their Gauss rule."""
+        return self.whole.shares_functions(other.whole)
