@@ -241,7 +241,7 @@ def _stack(arrays: list[np.ndarray]) -> np.ndarray:
 
 
 def split_uncoupled(system: PeriodicSystem, equations: Equations) -> list[tuple[PeriodicSystem, np.ndarray]]:
-    """Split the equations into parts that no term couples, such as two planes, each with its indices."""
+    """Split the equations into uncoupled parts, such as two planes, with the indices of their coordinates."""
     places = [equations.places(names) for names in equations.connected]
     return [(system.part(each), each) for each in places]
 

@@ -95,7 +95,7 @@ def harvest_on_road(
     rms, error = np.full((2, len(outputs), len(speeds)), np.nan)
     rms[:, speeds == 0], error[:, speeds == 0] = 0.0, 0.0
     change, missed = np.zeros(len(speeds)), np.zeros(len(speeds), dtype=bool)
-    quick = None  # one model for all speeds
+    quick = None  # one model for all speeds, if errors are not estimated
     if not compared and modes is not None:
         quick = model_at_speed(scene, float(np.abs(speeds).max()), modes, discretization)
     for k in np.flatnonzero(response.stable & (speeds != 0)).tolist():

@@ -249,7 +249,7 @@ def _solve_harmonics(
             if used:
                 q = solve_harmonic_balance(system[part], harmonics[kept])
                 finer = np.einsum("shn,sdn->sdh", q, tips[part])
-            if used >= first:  # the level below `first` serves only to estimate the error
+            if used >= first:  # fewer interactions than `first` serve only to estimate the error
                 total = sizes_of(finer).sum(axis=1)
                 distance = sizes_of(finer - c[part, :, kept]).sum(axis=1) / np.where(total == 0, 1, total)
                 error[part] = _ROUNDING if exact else distance

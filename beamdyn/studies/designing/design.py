@@ -121,7 +121,7 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
         raise InvalidValue("targets", targets, "give targets in a list", remedy)
     assert isinstance(targets, list | tuple)
     if sum(each.best is not None for each in targets) > 1:
-        bound = "only one result can be the largest or smallest"
+        bound = "only one answer can be the largest or smallest"
         raise InvalidValue("targets", [each.says for each in targets], bound, "give limits to the others")
     return tuple(targets)
 

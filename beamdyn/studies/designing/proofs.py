@@ -108,7 +108,7 @@ class Proofs:
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """Return the sign of the change of each number that brings a result nearer to target k, or None."""
+        """Return the sign of each number's change that brings a result nearer to target k, or None."""
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 
