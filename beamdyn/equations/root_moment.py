@@ -87,7 +87,7 @@ def root_moment(scene: Scene, discretization: Discretization, equations: Equatio
 def strain_per_moment(scene: Scene) -> float:
     """Compute the strain of the outer fibre at the root per bending moment there [1/(N m)].
 
-    The beam must have an outer fibre.  For a plate, the strain is the mean over the width.
+    The beam's `outer_fibre` must be given.  For a plate, the strain is the mean over the width.
     """
     beam, root = scene.beam, np.zeros(1)
     assert beam.outer_fibre is not None

@@ -297,7 +297,10 @@ def parametric_term(
 
 
 def _excess(model: ModelAtSpeed, squared: float, shape: np.ndarray, density: float) -> float:
-    """Compute x of the lowest mode: varying stiffness multiplies the mode's variance by 1/(1 - x)."""
+    """Compute x of a mode with `squared` frequency and `shape`, for the `density` of xi (see module).
+
+    Varying stiffness multiplies the mode's variance by 1/(1 - x).
+    """
     if not density:
         return 0.0
     omega = math.sqrt(squared)

@@ -309,7 +309,7 @@ class ModelAtSpeed(FieldsOnly):
         return observation.per_moment(self.scene) if isinstance(observation, StrainAtRoot) else 1.0
 
     def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
-        """Sum the rows of all quantities of the root's motion, each row times the quantity at the speed."""
+        """Sum the rows of all quantities of root motion, times each at the speed; `zero` if there is none."""
         root, total = self._root, zero
         for quantity, row in by_quantity.items():
             total = total + float(getattr(root, quantity)) * row

@@ -147,7 +147,7 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -
 def _peaks(
     model: ModelAtSpeed, drive: Excitation, seen: Observation, top: float, share: float
 ) -> Iterator[Peak]:
-    """Yield all peaks from 0 to a highest excitation frequency [Hz], accurate to a fraction of the width."""
+    """Yield all peaks from 0 to the excitation frequency `top` [Hz], accurate to `share` of their width."""
     drives = model.drives(drive)
     for h, total in modal_sums(model, drives, seen).items():
         magnitude = HarmonicMagnitude(model, drives[h], seen, total, h)

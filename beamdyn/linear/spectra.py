@@ -284,7 +284,8 @@ def warn_of_band(spectrum: PowerSpectrum | float, drive: Excitation, model: Mode
         by, lacks = (" and ".join(f"{f:.4g}" for f in each) for each in (exciting, missing))
         yield (
             f"the first resonance, at {first:.4g} Hz, is excited by inputs at {by} Hz, but the input has "
-            f"{lowest:.4g} to {highest:.4g} Hz: what {lacks} Hz excites is not in the answer; extend it"
+            f"{lowest:.4g} to {highest:.4g} Hz: what {lacks} Hz excites is not in the answer; "
+            "extend the input"
         )
 
 

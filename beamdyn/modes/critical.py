@@ -229,7 +229,7 @@ def critical_point(
 def _of_straight_beam(
     scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
 ) -> CriticalPoint:
-    """Find the critical speed of a straight beam, by a theoretical argument or by a search."""
+    """Find the critical speed of a straight beam, by theory or a search; `start` is a time for provenance."""
     target = affordable_target(scene, discretization, target)
     models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
@@ -276,7 +276,7 @@ def _is_lower(bending: critical_search.FoundSpeed, found: critical_search.FoundS
 
 
 def _made_by(found: critical_search.FoundSpeed, start: float) -> Provenance:
-    """Build the provenance record of a search that began at a given time."""
+    """Build the provenance record of a search that began at the time `start`, by `perf_counter` [s]."""
     return Provenance.since(start, str(found.model.discretization), str(found.coarse.discretization))
 
 
@@ -331,7 +331,7 @@ def _is_within_theory(model: Model) -> bool:
 
 
 def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
-    """Build the critical point that follows from a theoretical argument alone, without a search."""
+    """Build the critical point that follows from theory alone; `start` is a time for its provenance."""
     speed = np.inf if buckling.speed is None else buckling.speed
     return CriticalPoint(
         speed=speed,

@@ -102,7 +102,7 @@ class JudgedByRepeating(StatesModelError):
         return {name: float(each[0]) for name, each in small.items() if name != LARGE_DEFLECTION.name}
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate values with large deflection from the first frequency; nan, and why, if impossible.
+        """Estimate values with large deflection by the first frequency; nan, with a `reason`, if impossible.
 
         If rotation does not bend the beam, they are those of the straight beam.
         """

@@ -381,7 +381,7 @@ class CoupledRitzPart(RitzPart):
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """Build the forms of tension by speed, by root acceleration, mass, mass moving in a `direction`."""
+        """Build forms: tension by speed, and by root acceleration; mass; mass for motion in a `direction`."""
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T

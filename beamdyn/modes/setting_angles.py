@@ -26,7 +26,7 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
-_LINEAR = "the limits are those of linear theory: loci of a bent beam have other shapes at every angle"
+_LINEAR = "the limits are those of linear theory: of a bent beam the loci have another shape at every angle"
 # Rounding error of an angle [rad]: the cosine of a limit is a quotient of small differences.
 _ROUNDING = 1e-12
 

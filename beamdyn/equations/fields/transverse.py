@@ -308,7 +308,10 @@ def _terms(pair: Pair) -> Iterator[Term]:
 
 
 def _spin(pair: Pair, cosine: float, sine: float) -> Iterator[Term]:
-    """Yield terms of centrifugal forces on masses that move in the plane of rotation or tilt out of it."""
+    """Yield terms of centrifugal forces on masses that move in the plane of rotation or tilt out of it.
+
+    `cosine` and `sine` are those of the precone.
+    """
     (i, j), beam, (d, n) = pair.directions, pair.rows.beam, plane_components(pair.rows.scene)
     if softening := d[i] * d[j] + sine**2 * n[i] * n[j]:
         yield pair.term("spin softening", pair.translation, "speed_squared", -softening)

@@ -157,7 +157,7 @@ class Solver(Eigensolver):
 
     @cached_property
     def _at_rest(self) -> np.ndarray:
-        """Cholesky factor of the stiffness at rest, including the shift."""
+        """Cholesky factor of the stiffness at rest plus `pencil.shift` times the mass matrix."""
         K0, M, shift = self.pencil.K0, self.pencil.M, self.pencil.shift
         with explained():
             return np.linalg.cholesky(K0 + shift * M if shift else K0)
@@ -316,7 +316,7 @@ class Solver(Eigensolver):
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute gyroscopic modes of a beam on root springs, in coordinates with unit stiffness matrix."""
+        """Compute gyroscopic modes of a beam on root springs, in a `basis` with unit stiffness matrix."""
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
         inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)), count)

@@ -129,7 +129,7 @@ def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
     transverse, squared = load.growing.get("root_transverse", 0.0), speed**2
     natural = transverse or natural
     push = -2 * natural - math.copysign(_PUSH * load.elastica.beam.stations.length, natural + 0.0)
-    none_there = NoEquilibrium(f"no equilibrium but that of the branch from rest exists at {speed:.6g} rad/s")
+    none_there = NoEquilibrium(f"no equilibrium beside the branch from rest exists at {speed:.6g} rad/s")
     given: dict[Quantity, float] = {name: value * squared for name, value in load.growing.items()}
     pushed = Loading(load.elastica, {"root_transverse": 1.0}, abs(push) * squared, given)
     try:

@@ -36,7 +36,7 @@ class LargeSolver(Eigensolver):
 
     @cached_property
     def _at_rest(self) -> np.ndarray:
-        """Cholesky factor of the stiffness at rest, including the shift."""
+        """Cholesky factor of the stiffness at rest plus `pencil.shift` times the mass matrix."""
         with explained():
             return np.linalg.cholesky(self.pencil.K0 + self.pencil.shift * self.pencil.M)
 

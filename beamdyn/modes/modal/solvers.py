@@ -233,7 +233,7 @@ def _nodes(intervals: int) -> np.ndarray:
 
 
 def _interpolate(solver: Eigensolver, eigen: Eigen, speeds: np.ndarray, power: int) -> Eigen | None:
-    """Interpolate modes at ascending speeds from Chebyshev points; None if there are too few points."""
+    """Interpolate modes at ascending speeds from Chebyshev points of speed^`power`; None if inaccurate."""
     if (np.real(eigen.eigenvalue) * np.imag(eigen.eigenvalue)).any():  # flutter is not interpolated
         return None
     points, count = eigen.eigenvalue.shape

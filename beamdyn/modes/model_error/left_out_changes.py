@@ -290,7 +290,7 @@ def _gather(
     reason: str,
     shape: tuple[int, ...] = (),
 ) -> LeftOutEffects:
-    """Collect the changes by all neglected effects: by `change` of each, and by large deflection."""
+    """Collect the changes by all neglected effects: `change` of each, and `bent` for large deflection."""
     additions, not_known, not_modelled = _list_effects(scene, straight)
     changes = {} if bent is None else {LARGE_DEFLECTION.name: bent}
     not_known |= {LARGE_DEFLECTION.name: reason} if reason else {}
