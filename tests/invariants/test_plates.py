@@ -282,7 +282,7 @@ def test_loads_along_the_span_of_a_strip():
 
 def test_loads_along_the_span_refuse_a_tapered_width():
     scene = bd.Scene(strip((0.05, Polynomial([0.01, -0.002]), 0.0002), 0.3), bd.Mount(0.2), physics=PLATE)
-    with pytest.raises(ValueError, match=r"physics\.camber.*where the width is constant"):
+    with pytest.raises(ValueError, match=r"physics\.camber.*only if the width is constant"):
         bd.static_loads(scene, [10.0])
 
 

@@ -140,7 +140,7 @@ def test_loads_of_a_tapered_strip_choose_physics_without_camber():
     scene = bd.Scene(strip, bd.Mount(0.1, math.pi, math.pi / 2), physics="auto", damping_ratio=0.01)
     found = bd.static_loads(scene, 50.0, at=[0.0])
     assert CAMBER not in found.physics_choice.included
-    assert any("where the width is constant" in said for said in found.warnings)
+    assert any("only if the width is constant" in said for said in found.warnings)
 
 
 def test_limits_of_a_bent_beam_are_not_known():

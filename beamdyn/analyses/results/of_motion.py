@@ -251,7 +251,7 @@ def _harvest_tables(result: bd.Harvest) -> Group:
     tables = [harvest_columns(result)]
     if result.road is not None:
         speed = Column("speed", result.speeds, "rad/s", form=".8g")
-        title = f"On a random road, {result.road.roughness.words}, in addition"
+        title = f"Additionally on a random road, {result.road.roughness.words}"
         tables.append(Columns(speed, *_road_columns(result), title=title))
     few = of_modes.selection_note(shown, result.speeds)
     return Group(*(table_of(each.at(shown), result.display_units, each.title + few) for each in tables))

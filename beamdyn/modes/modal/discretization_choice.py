@@ -45,6 +45,7 @@ _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
 # Smallest number of elements on a segment, so that the third of three meshes has a quarter as many on each;
 # and on one with a boundary layer, so that half as many resolve it too.
 _ON_EACH, _ON_LAYERS = 4, 8
+_SHORT = 4e-3  # length of a segment as x/L below which elements of a quarter of it lose digits by rounding
 _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers
 _MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"
@@ -280,7 +281,8 @@ def _first_fem(
     from beamdyn.equations.fem import MOST_ELEMENTS, MOST_REFINED, Fem
 
     least = min(16 * segments, MOST_REFINED) if cheapest else 80
-    on_each = _ON_LAYERS if has_layers else _ON_EACH
+    has_short = np.diff(scene.modelled_beam.breakpoints).min() < _SHORT
+    on_each = _ON_LAYERS if has_layers else _ON_EACH // 2 if has_short else _ON_EACH
     return Fem(min(max(least, on_each * segments, 4 * modes), MOST_ELEMENTS), on_each=on_each)
 
 
