@@ -79,7 +79,7 @@ def stretches(answer: SteadyResponse) -> np.ndarray:
 
 
 def _bands(x: np.ndarray, said: np.ndarray) -> Iterator[ChartBand]:
-    """Yield bands of speeds with the same reason; a band ends halfway between two speeds."""
+    """Yield bands of speeds with one reason not to trust the response; each ends midway between two."""
     changes = np.flatnonzero(said[1:] != said[:-1]) + 1
     ends = [x[0], *((x[:-1] + x[1:]) / 2)[changes - 1], x[-1]]
     for start, (low, high) in zip([0, *changes.tolist()], pairwise(ends), strict=True):

@@ -66,7 +66,7 @@ def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequenc
 def read_history(text: DataText, half: Half, speed: float | None) -> MeasuredHistory:
     """Read time histories: a column of times, and at least one column such as "tip" or "root moment"."""
     if speed is not None:
-        bound = "histories are compared with the scene's motion"
+        bound = "measured histories are compared with the transient of the scene's motion"
         raise InvalidValue("speeds", speed, bound, "leave it out", "rad/s")
     table, columns = _read(text, MeasuredHistory)
     _check_ascending(table, "time", "s")

@@ -334,7 +334,10 @@ class CoupledEnclosure(Enclosure):
 
     @cached_property
     def _twisting_tail(self) -> float:
-        """Upper bound of the form of twisting by inertia over the energy, for functions outside the basis."""
+        """Upper bound of the quadratic form of the tip's product of inertia, divided by the elastic energy.
+
+        It holds for functions outside the basis.
+        """
         slope = self._slope
         flexibility = slope.T @ np.linalg.solve(self.stiffness, slope) + self.tails[3] * np.eye(2)
         total = np.linalg.det(flexibility) / 2

@@ -223,7 +223,7 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Bending moments at the Gauss points by the four loads of each function, (4, functions, points)."""
+        """Bending moments at the Gauss points by each function's loads, as in `forms`: (4, n, points)."""
         tension_b, tension_a, mass = self.loads
         slope, (xi, lumped) = self.slope[:, :-1], self.beam.lumps
         inertia = self.from_tip(self.from_tip(mass * self.deflection[:, :-1]))

@@ -90,9 +90,9 @@ def _warn_of_narrow_section(section: Rectangle) -> Iterator[Statement]:
     narrowest = float((width / thickness).min())
     if narrowest < _NARROW * (1 - _ROUNDING_OF_SIDES):
         ratio = told_from(narrowest, _NARROW)
-        said = f"width/thickness is {ratio}: below {_NARROW:g} a section is no plate, and what "
+        said = f"width/thickness is {ratio}: below {_NARROW:g} a section is no plate, and corrections for "
         worth = (
-            f"camber and torsion change is fitted to solid bodies, from which frequencies differ by up to "
+            f"camber and torsion are fitted to frequencies of solid elements, and differ from these by up to "
             f"{percent(_WORTH_OF_NARROW)} (docs/solids.md)"
         )
         quantity = "width over thickness"

@@ -38,8 +38,9 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     if not len(harmonics):
         return largest
     size = np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1)
-    # Lines cross if their harmonics are not multiples of each other. The strongest line is constant along its
-    # crests; the lines that cross it decide where on a crest the maximum is, however weak they are.
+    # Over the plane of both phases each line is a wave. Waves with proportional harmonics are parallel, and
+    # others cross. The strongest is constant along its crests; the waves that cross it decide where on
+    # a crest the maximum is, however weak they are.
     j, k = harmonics.T
     crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
     others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)

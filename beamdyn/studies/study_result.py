@@ -177,7 +177,10 @@ class Study(SceneResult, StatesModelError):
         return self._say_place(int(total.max(axis=1).argmax()))
 
     def _where_unknown(self, name: str) -> str:
-        """Give the inputs of the first design of `left_out_places` with an unknown change by an effect."""
+        """Say at which designs of `left_out_places` the change by the neglected effect `name` is unknown.
+
+        These are the inputs of the first such design, and the number of others; "" if there is none.
+        """
         nothing = np.isnan(self.left_out_effects.changes[name]).any(axis=1)
         refused = [bool(np.all(self.status[place] == REFUSED)) for place in self.left_out_places]
         unknown = np.flatnonzero(nothing & ~np.array(refused))

@@ -171,7 +171,10 @@ def solve_steps(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, ta
 
 
 def _maps_to_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Compute the maps to the state at step ends from the maps `a` to accelerations at nodes."""
+    """Compute the maps from the state at the start of each step to that at its end.
+
+    `a` are the maps from the state at the start to the accelerations at the nodes.
+    """
     return add_drift(increment(a, h, table), h, first=1)
 
 

@@ -77,7 +77,7 @@ class RubbingAnswer(Answer):
         return hot | self.result.messages_of_locked(count)
 
     def again(self, brake: Any = None, **changed: Any) -> Any:
-        """Solve the brake at the same force, with another brake, friction or direction."""
+        """Repeat the solution at the same force, with another brake, friction or rotation."""
         result = self.result
         given = {name: getattr(result, name) for name in ("friction", "force", "reverse")}
         return type(self).solver(brake or result.brake, **given | changed)

@@ -348,7 +348,8 @@ def _start(mechanism: Mechanism, driver: str, *measured: str) -> tuple[System, N
     check_mechanism(mechanism)
     for name in measured:
         if not mechanism.load(name).has_coordinate:
-            raise ValueError(f"driver {name!r} follows its body and has no coordinate: drive another load")
+            said = "turns with its body, so that its travel depends on the path: choose another"
+            raise ValueError(f"load {name!r} {said}")
     mechanism.load(driver)
     system = mechanism.system
     y = assemble(mechanism).batch

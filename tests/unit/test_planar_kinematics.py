@@ -236,7 +236,7 @@ def test_a_force_that_follows_its_body_stays_at_right_angles():
     assert solve(lever, run.position).amplitudes["turn"] == pytest.approx([-2.0] * 3, abs=ROUNDING)
     assert run.ratio["hand"] == pytest.approx([1.0] * 3, abs=ROUNDING)
     assert np.isnan(run.travel["hand"]).all()
-    with pytest.raises(ValueError, match="'hand' follows its body"):
+    with pytest.raises(ValueError, match="'hand' turns with its body"):
         stroke(lever, "hand", [0.1])
 
 

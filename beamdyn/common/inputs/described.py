@@ -184,7 +184,7 @@ def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
 
 
 class _Tree(dict[Any, Any]):
-    """New values by the key or index in a path of one step; for longer paths, a nested tree by the first."""
+    """New values of an object's parts: by key or index a value, or a tree of those within."""
 
 
 def _steps(path: str) -> list[str | int]:

@@ -132,7 +132,7 @@ class PicturePanel:
         self._fill()
 
     def put(self, answer: object, part: str) -> None:
-        """Show another result together with its part, which is made already."""
+        """Show another result whose part of the page is given; cancel the part that is being made."""
         self.close()
         self._answer = answer
         self._write(part)

@@ -75,7 +75,7 @@ class Fitting:
     def _fastest(self) -> Modes:
         """Modes at the highest speed, whose basis and physics suffice at all speeds.
 
-        The scene has a root spring or tip body added if a free number needs it.
+        A root spring or tip body that the scene lacks is added if one of its parameters is fitted.
         """
         opening = opened(self.scene, [number.path for number in self.numbers])
         with unannounced():

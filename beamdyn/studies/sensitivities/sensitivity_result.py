@@ -166,7 +166,11 @@ def _matters(scene: Scene, path: str, value: float) -> bool:
 
 
 def _number(scene: Scene, path: str, value: float) -> SceneNumber:
-    """Build the number of a path, with a step of 1 % of its value, or of a typical size if larger."""
+    """Describe the input at a path, with the step for its derivative.
+
+    The step is 1 % of the value or, if larger, of a typical magnitude, such as the beam's length; 0.01 for
+    angles [rad] and Poisson's ratio; for positions of points, `_room_of` them.
+    """
     unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
     if unit == "rad" or path == "beam.poissons_ratio":
         return SceneNumber(path, unit, value, _STEP)

@@ -83,7 +83,9 @@ def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: floa
 
 @one_blas_thread()
 def transient_modes_diagram(scene: Scene, t_end: float, budget: float = 5.0) -> Diagram:
-    """Measure error against time of a transient over the number of modes: those at rest, or at two speeds.
+    """Measure error against computing time of a transient, for increasing numbers of modes.
+
+    One curve uses modes at rest, the other modes at the slowest and at the fastest speed of the run.
 
     Parameters
     ----------
