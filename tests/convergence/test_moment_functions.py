@@ -57,7 +57,7 @@ SCENES = {
 @pytest.mark.parametrize("scene", SCENES.values(), ids=SCENES.keys())
 def test_limits_are_those_of_functions_on_each_segment(scene: bd.Scene) -> None:
     expected = bd.natural_modes(scene, 0.8, 4, bd.Ritz(12))
-    found = bd.natural_modes(scene, 0.8, 4, bd.Ritz(60, "moments"))
+    found = bd.natural_modes(scene, 0.8, 4, bd.Ritz(70, "moments"))
     difference = np.abs(found.eigenvalue / expected.eigenvalue - 1)
     assert (difference <= found.error + expected.error).all(), (difference, found.error, expected.error)
     assert found.error.max() < 1e-9

@@ -130,7 +130,7 @@ def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeN
         bound = "give the numbers that are unknown, by their names"
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": None}')
     if speed := next((path for path in free if isinstance(path, str) and is_speed(path)), ""):
-        bound = "the data state the speeds at which their frequencies were measured"
+        bound = "the speeds are those of the data, no unknown numbers"
         raise InvalidValue("free", speed, bound, "leave it out, and give the data their speeds")
     paths = [check_path("free", path) for path in free]
     made = numbers_of(opened(scene, paths), paths, "free")
