@@ -11,6 +11,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
 _FEWER = 2  # one of torsion, and one of camber
+_LEAST = 2  # smallest number of functions across the width
 
 
 @dataclass(frozen=True)
@@ -43,6 +44,10 @@ class FewerAcross:
     def spaces(self, beam: Beam) -> SpacesOfFewer:
         """Build the function spaces on a beam, one for each kind of boundary condition."""
         return SpacesOfFewer(self.whole.spaces(beam))
+
+    def has_fewer_of_both(self, beam: Beam) -> bool:
+        """Return whether functions both of torsion and of camber are left out; small bases keep some."""
+        return self.whole.spaces(beam).across >= _LEAST + _FEWER
 
     def cells(self, beam: Beam) -> Cells:
         """Divide a beam into cells on which the functions are smooth."""
@@ -87,12 +92,12 @@ class SpacesOfFewer:
     @property
     def across(self) -> int:
         """Number of functions across the width of a plate, without the constant one."""
-        return max(2, self.whole.across - _FEWER)
+        return max(_LEAST, self.whole.across - _FEWER)
 
     @property
     def fewer_across(self) -> int:
         """Number of functions across the width of a plate in the coarser discretization."""
-        return max(2, self.whole.fewer_across - _FEWER)
+        return max(_LEAST, self.whole.fewer_across - _FEWER)
 
     def shares_functions(self, other: SpacesOfFewer) -> bool:
         """Whether other spaces have the same functions, whatever their Gauss rule."""

@@ -306,10 +306,10 @@ def _with_error(
     ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
     error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
     if model.scene.models_width:  # meshes, and the largest bases, differ along the beam alone
-        narrow = Model(model.model.scene, FewerAcross(model.discretization))
-        error = error + BASES_OF_PLATES.factor * np.abs(
-            evaluate(ModelAtSpeed(narrow, model.speed, model.modes)) - value
-        )
+        narrow = FewerAcross(model.discretization)
+        fewer = evaluate(ModelAtSpeed(Model(model.model.scene, narrow), model.speed, model.modes))
+        known = narrow.has_fewer_of_both(model.scene.modelled_beam)
+        error = error + (BASES_OF_PLATES.factor * np.abs(fewer - value) if known else np.inf)
     truncation, compared = np.zeros(()), [str(coarse.discretization)]
     if model.modes is not None and larger is None:
         truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]

@@ -274,10 +274,10 @@ def _equilibrium(system: ModalSystem) -> np.ndarray:
     A circuit is without voltage there, and the flux, its last coordinate, begins at 0.
     """
     _, K, f = system.coefficients(np.zeros(()))
-    if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K)).min() < _FREE * shift:
+    bent, found = slice(len(f) - (system.equations.voltage is not None)), np.zeros_like(f)
+    if (shift := system.equations.shift) and np.abs(np.linalg.eigvalsh(K[bent, bent])).min() < _FREE * shift:
         bound = "at time 0 the beam turns freely on its hinge: no position is its equilibrium"
         raise InvalidValue("initial", "equilibrium", bound, "give 'rest', or a root_stiffness")
-    bent, found = slice(len(f) - (system.equations.voltage is not None)), np.zeros_like(f)
     found[bent] = np.linalg.solve(K[bent, bent], f[bent])
     return found
 

@@ -356,3 +356,5 @@ def test_the_error_of_a_response_has_a_part_by_functions_across(monkeypatch):
     found = bd.frequency_response(scene, **ask, discretization=bd.Ritz(14))
     assert (np.abs(found.response - best.response) <= found.error + best.error).all()
     assert found.error.max() < 1e-2 * np.abs(found.response).max()
+    small = bd.frequency_response(scene, **ask, discretization=bd.Ritz(5))  # without a basis that is narrower
+    assert (np.abs(small.response - best.response) <= small.error + best.error).all()

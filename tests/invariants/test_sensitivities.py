@@ -174,6 +174,21 @@ def test_the_derivative_by_speed_of_elements_keeps_its_digits():
     assert (fem.error < 1e-3 * np.abs(ritz.derivative)).all()
 
 
+def test_the_length_of_a_blade_of_many_stations_has_a_derivative_by_elements():
+    """Nearby lengths may have meshes of another size: smaller steps do not."""
+    rng = np.random.default_rng(0)
+    stations = np.sort(np.r_[0.0, 1.0, rng.uniform(0.02, 0.98, 28)])
+    mass, stiffness = (
+        bd.Table(stations, first * 100.0**-power) for first, power in ((100, stations / 2), (1e6, stations))
+    )
+    scene = bd.Scene(bd.Beam.from_stiffness(10.0, mass, stiffness, point_masses=[bd.PointMass(6.0, 30.0)]))
+    ritz, fem = (
+        bd.frequency_sensitivities(scene, 0.0, 2, ["beam.length"], discretization=name)
+        for name in ("ritz", "fem")
+    )
+    assert (np.abs(fem.derivative - ritz.derivative) <= fem.error + ritz.error).all()
+
+
 # Near the critical speed; a damper, a mass, a spring; nearer; a stiff spring and a soft hinge, over whose
 # places and stiffness 1 % of the length is a long step.
 @pytest.mark.parametrize(

@@ -116,6 +116,22 @@ def test_a_damped_free_turn_has_frequency_0_and_leaves_the_other_modes(damping):
     assert found.error.max() < 1e-9
 
 
+@pytest.mark.parametrize("damper", [5.0, 100.0])
+def test_a_damped_tip_of_a_hinged_beam_takes_no_other_mode_for_its_free_turn(damper):
+    """Its modes are the eigenvalues of the first-order equations; a strong damper holds the tip."""
+    beam, mount = bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(root_stiffness=0.0)
+    scene = bd.Scene(beam, mount, damping=bd.Damping(tip_damper=damper))
+    found = bd.natural_modes(scene, 0.0, 4)
+    given = bd.matrices(scene, 0.0, None, discretization=found.model.discretization)
+    by_mass = [-np.linalg.solve(given.mass, each) for each in (given.stiffness, given.damping)]
+    n = len(given.mass)
+    A = np.block([[np.zeros((n, n)), np.eye(n)], by_mass])
+    s = np.linalg.eigvals(A)
+    lowest = np.sort(s.imag[s.imag > 1e-3])[:2]
+    vibrating = np.sort(found.frequency[found.frequency > 1e-3])[:2]
+    np.testing.assert_allclose(2 * np.pi * vibrating, lowest, rtol=1e-8)  # of a matrix that is not symmetric
+
+
 def test_springs_at_one_place_add_up_and_the_second_plane_has_its_own():
     beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=1.0)
     halves = [bd.PointSpring(0.5, 3.0), bd.PointSpring(0.5, 4.0)]

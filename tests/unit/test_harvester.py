@@ -305,9 +305,11 @@ def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
     assert " 1 mode," in " ".join(printed.split()) and "Resonances" not in printed  # at one speed
 
 
-def test_a_harvester_that_begins_in_equilibrium_stays_there_without_voltage():
+@pytest.mark.parametrize("root_stiffness", [math.inf, 10.0])
+def test_a_harvester_that_begins_in_equilibrium_stays_there_without_voltage(root_stiffness):
     layered = bd.Harvester(**CERAMIC, resistance=1e5).on(STRIP)
-    scene = bd.Scene(layered, bd.Mount(0.1, 0.5), bd.SteadyRotation(50.0), damping_ratio=0.01)
+    mount = bd.Mount(0.1, 0.5, root_stiffness=root_stiffness)
+    scene = bd.Scene(layered, mount, bd.SteadyRotation(50.0), damping_ratio=0.01)
     still, moving = (bd.simulate(scene, 0.2, initial=start) for start in ("equilibrium", "rest"))
     bent = bd.natural_modes(scene, 50.0, 1).static_deflection
     np.testing.assert_allclose(still.tip, bent, rtol=1e-4)  # of the modes left out

@@ -32,9 +32,11 @@ from beamdyn.files.decks.elastodyn import named_file
 from beamdyn.scene.section_matrices import (
     LEAST,
     MOST_ASYMMETRY,
+    MOST_EXCESS,
     MOST_STRANGENESS,
     asymmetry,
     least_eigenvalues,
+    polar_excess,
     strangeness,
 )
 
@@ -247,7 +249,8 @@ def _check_matrices(
         wanted = (
             "m on the diagonal, m times the centre beside it, and the sum of the others as inertia about z"
         )
-        checks += [(strangeness(ours) > MOST_STRANGENESS, wanted)]
+        is_bad = (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS)
+        checks += [(is_bad, wanted)]
     for bad, wanted in checks:
         if bad.any():
             k = int(bad.argmax())

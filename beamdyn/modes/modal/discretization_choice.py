@@ -45,7 +45,7 @@ _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
 # Smallest number of elements on a segment, so that the third of three meshes has a quarter as many on each;
 # and on one with a boundary layer, so that half as many resolve it too.
 _ON_EACH, _ON_LAYERS = 4, 8
-_SHORT = 4e-3  # length of a segment as x/L below which elements of a quarter of it lose digits by rounding
+_SHORT = 0.02  # length of a segment as x/L below which elements of a quarter of it lose digits by rounding
 _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers
 _MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"

@@ -23,6 +23,7 @@ _GRADED_AT_REST = 1e-12
 _UNDAMPED = 1e-6
 # Ratio of the smallest squared speed that is tried to that at which rotation affects the stiffness.
 _SMALLEST_TRIAL = 1e-12
+REAL = 1e-8  # part of an eigenvalue, over its magnitude, that counts as rounding of a double root
 # Ratio of a squared frequency to the squared speed below which the beam turns freely, within rounding.
 _NEUTRAL = 1e-12
 
@@ -128,12 +129,15 @@ def other_eigenvalues(inverse: np.ndarray, rates: np.ndarray) -> np.ndarray:
     """List the indices of the eigenvalues 1/`inverse` that do not belong to free rotations of given rates.
 
     Each rotation has the eigenvalue 0, double if it is undamped, where rounding splits it by the square root
-    of the rounding error; else it has one more, near minus its rate.
+    of the rounding error; else it has one more, which is real and near minus its rate.
     """
     order = np.argsort(np.abs(inverse), kind="stable")
     others = order[: len(order) - len(rates) - int((rates == 0).sum())]
     for rate in rates[rates > 0]:
-        others = np.delete(others, np.abs(1 / inverse[others] + rate).argmin())
+        s = 1 / inverse[others]
+        apart = np.where(np.abs(s.imag) < REAL * np.abs(s), np.abs(s + rate), np.inf)
+        if np.isfinite(apart).any():
+            others = np.delete(others, apart.argmin())
     return np.sort(others)
 
 

@@ -188,11 +188,16 @@ class FittedModes:
         for k, (least, most) in enumerate(zip(*self.fitting.limits, strict=True)):
             step = _STEP * (self.x[k] if self.fitting.numbers[k].is_compliance else 1.0)
             low, high = max(self.x[k] - step, least), min(self.x[k] + step, most)
-            scenes = (
-                self.fitting.scene_at(np.where(np.arange(len(self.x)) == k, at, self.x)) for at in (low, high)
+            scenes = {
+                at: self.fitting.scene_at(np.where(np.arange(len(self.x)) == k, at, self.x))
+                for at in (low, self.x[k], high)
+            }
+            near = {at: self.model.equations_near(scene) for at, scene in scenes.items()}
+            # On one side a point mass may pass a breakpoint, and the number of functions change.
+            (low, a), *_, (high, b) = (
+                (at, e) for at, e in near.items() if e.size == self.model.equations.size
             )
-            pencils = [self.model.equations_near(scene).steady() for scene in scenes]
-            changes.append(PencilChange.of(pencils, np.array([-1.0, 1.0]) / (high - low)))
+            changes.append(PencilChange.of([a.steady(), b.steady()], np.array([-1.0, 1.0]) / (high - low)))
         return changes
 
 

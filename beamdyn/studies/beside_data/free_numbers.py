@@ -143,7 +143,8 @@ def _free(scene: Scene, number: SceneNumber, bounds: Bounds | None) -> FreeNumbe
     scale = _stiffness(scene) if path in SPRINGS else number.step / _STEP
     if number.name == "beam.tip.offset" or number.unit == "rad":
         scale = max(scale, 1.0 if number.unit == "rad" else scene.beam.length)
-    usual = _usual_bounds(number, given, scale)
+    low, high = _usual_bounds(number, given, scale)
+    usual = low, min(high, scene.beam.length if path.endswith("].position") else math.inf)
     return FreeNumber(path, number.unit, given, scale, usual if bounds is None else _checked(number, bounds))
 
 

@@ -22,7 +22,7 @@ from typing import Generic, TypeAlias, TypeVar
 import numpy as np
 import scipy.linalg
 
-from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
+from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.equations.equations_of_motion import SteadyPencil
 from beamdyn.modes.modal.model import Model
@@ -353,9 +353,8 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
         raise InvalidValue(name, value, bound, "place the point at a small distance from there")
     equations = model.equations_near(scene)
     if equations.size != model.equations.size:
-        remedy = 'give discretization="fem", or a Ritz of few functions'
-        bound = "the number of independent functions differs between nearby designs"
-        raise NoModelAnswer(f"discretization = {model.discretization}: {bound}; {remedy}")
+        bound = "the number of functions differs between nearby designs"
+        raise InvalidValue(name, value, bound, "give a Ritz or a Fem of another size")
     fine, coarse = equations.steady(), model.equations.coarse
     if coarse is None:
         return fine, model.coarser.equations_near(scene).steady()
