@@ -40,6 +40,7 @@ from beamdyn.scene.mount import RIGHT_ANGLE, ROUNDED_ANGLE, Mount
 from beamdyn.scene.numbers import SCALE
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
+from beamdyn.studies.sensitivities.changes import equations_near
 
 # Exponents of each input in mass per length, bending, axial and second bending stiffness.
 POWERS = {
@@ -360,7 +361,7 @@ def _scene_at(reference: Scene, at: Mapping[str, float]) -> Scene:
 def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> PencilFamily:
     scenes = _node_scenes(reference, nodes)
     first = Model(scenes[0], discretization)
-    equations = [first.equations_near(scene) for scene in scenes]
+    equations = [equations_near(first, scene) for scene in scenes]
     pencils = [each.steady() for each in equations]
     same = all(np.array_equal(pencil.K0, pencils[0].K0) for pencil in pencils)
     directions = range(reference.physics.planes)

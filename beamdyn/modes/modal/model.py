@@ -26,9 +26,7 @@ from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.circuit import coupling_of
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.equations.functions_of_nearby_beam import NearbySpaces
 from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
-from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
 from beamdyn.modes.modal.solvers import solver_of
@@ -64,36 +62,15 @@ class Model(FieldsOnly):
     @cached_property
     def equations(self) -> Equations:
         """Equations of motion, linear about the straight beam or, with section matrices, its curved axis."""
-        if self.scene.beam.matrices is not None:
-            return self.bent.about_straight
-        return self._of_fields
+        return self.over() if self.scene.beam.matrices is None else self.bent.about_straight
 
-    @cached_property
-    def _of_fields(self) -> Equations:
-        """Equations of motion built from the displacement fields of the straight beam."""
-        return self._over(self.discretization.spaces(self.scene.modelled_beam))
-
-    def equations_near(self, scene: Scene) -> Equations:
-        """Build the equations of a scene that differs little, in this model's functions if segments agree.
-
-        Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
-        properties of the beam, may differ abruptly after the smallest change of these; other functions follow
-        the breakpoints.
-        """
-        nearby, own, other = Model(scene, self.discretization), self.scene.modelled_beam, scene.modelled_beam
-        spaces = self.discretization.spaces(own)
-        if own.breakpoints != other.breakpoints:
-            of_moments = isinstance(spaces, MomentSpaces)
-            spaces = NearbySpaces(spaces, other) if of_moments else self.discretization.spaces(other)
-        return nearby.equations if scene.beam.matrices is not None else nearby._over(spaces)
-
-    def _over(self, spaces: Spaces) -> Equations:
-        """Build the equations of motion of the straight beam in given functions."""
+    def over(self, spaces: Spaces | None = None) -> Equations:
+        """Build the equations of motion of the straight beam, in given functions or the discretization's."""
         if self.scene.chooses_physics:  # that "auto" suits a curved axis is checked only here
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
-        return assemble_over(scene, spaces)
+        return assemble_over(scene, spaces or self.discretization.spaces(self.scene.modelled_beam))
 
     @cached_property
     def coupling(self) -> dict[str, np.ndarray]:
@@ -119,7 +96,8 @@ class Model(FieldsOnly):
         # The import is inside the function because few scenes need the module.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
-        return assemble_beam_in_space(self.scene, self.discretization, self._of_fields)
+        straight = self.equations if self.scene.beam.matrices is None else self.over()
+        return assemble_beam_in_space(self.scene, self.discretization, straight)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:

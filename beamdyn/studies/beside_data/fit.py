@@ -31,7 +31,7 @@ from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.beside_data.free_numbers import FreeNumber, opened
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
-from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes
+from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes, equations_near
 
 _STEP = 1e-4  # step of central differences of the matrices, for variables of size 1
 _HZ = 1 / (2 * np.pi)
@@ -192,7 +192,7 @@ class FittedModes:
                 at: self.fitting.scene_at(np.where(np.arange(len(self.x)) == k, at, self.x))
                 for at in (low, self.x[k], high)
             }
-            near = {at: self.model.equations_near(scene) for at, scene in scenes.items()}
+            near = {at: equations_near(self.model, scene) for at, scene in scenes.items()}
             # On one side a point mass may pass a breakpoint, and the number of functions change.
             (low, a), *_, (high, b) = (
                 (at, e) for at, e in near.items() if e.size == self.model.equations.size

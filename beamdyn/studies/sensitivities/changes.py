@@ -24,9 +24,12 @@ import scipy.linalg
 
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
-from beamdyn.equations.equations_of_motion import SteadyPencil
+from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.equations.functions_of_nearby_beam import NearbySpaces
+from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.numbers import with_numbers
+from beamdyn.scene.scene import Scene
 from beamdyn.studies.sensitivities.sensitivity_result import SceneNumber
 
 PLACES = 8
@@ -351,14 +354,31 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
         bound = "a point mass or spring would move away from the tip, or from a jump of the section"
         raise InvalidValue(name, value, bound, "place the point at a small distance from there")
-    equations = model.equations_near(scene)
+    equations = equations_near(model, scene)
     if equations.size != model.equations.size:
         bound = "the number of functions differs between nearby designs"
         raise InvalidValue(name, value, bound, "give a Ritz or a Fem of another size")
     fine, coarse = equations.steady(), model.equations.coarse
     if coarse is None:
-        return fine, model.coarser.equations_near(scene).steady()
+        return fine, equations_near(model.coarser, scene).steady()
     return fine, fine.part(coarse)
+
+
+def equations_near(model: Model, scene: Scene) -> Equations:
+    """Build the equations of a scene that differs little, in a model's functions if segments agree.
+
+    Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
+    properties of the beam, may differ abruptly after the smallest change of these; other functions follow
+    the breakpoints.
+    """
+    nearby, own, other = Model(scene, model.discretization), model.scene.modelled_beam, scene.modelled_beam
+    if scene.beam.matrices is not None:
+        return nearby.equations
+    spaces = model.discretization.spaces(own)
+    if own.breakpoints != other.breakpoints:
+        of_moments = isinstance(spaces, MomentSpaces)
+        spaces = NearbySpaces(spaces, other) if of_moments else model.discretization.spaces(other)
+    return nearby.over(spaces)
 
 
 def steady_pencils(model: Model) -> tuple[SteadyPencil, SteadyPencil]:
