@@ -217,13 +217,6 @@ class SampledSpace(FieldsOnly, ABC):
         return self.samples[order] @ self.weights(weight)
 
 
-def product_of(
-    rows: SampledSpace, columns: SampledSpace, weight: Profile, orders: tuple[int, int]
-) -> np.ndarray:
-    """Integrate a weight times derivatives (`orders`) of function pairs, by the Gauss rule of both spaces."""
-    return (rows.samples[orders[0]] * rows.weights(weight)) @ columns.samples[orders[1]].T
-
-
 class RootConditions(NamedTuple):
     """Boundary conditions of a field's trial functions at the root, and their smoothness.
 
@@ -248,6 +241,21 @@ class RootConditions(NamedTuple):
 CLAMPED = RootConditions(2, 2)  # a deflection with zero slope at the root
 HINGED = RootConditions(1, 2)  # a deflection whose first function rotates about the root
 FIXED = RootConditions(1, 1)  # a displacement that is 0 at the root, such as stretch
+
+
+class SampledSpaces(ABC):
+    """Base of function spaces whose functions are sampled at the points of a common Gauss rule."""
+
+    @abstractmethod
+    def functions(self, conditions: RootConditions) -> SampledSpace:
+        """Build trial functions that satisfy conditions at the root."""
+
+    def product(
+        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
+    ) -> np.ndarray:
+        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        left, right = self.functions(rows), self.functions(columns)
+        return (left.samples[orders[0]] * left.weights(weight)) @ right.samples[orders[1]].T
 
 
 class Functions(Protocol):

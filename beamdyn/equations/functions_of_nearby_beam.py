@@ -12,14 +12,14 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from beamdyn.common.results.snapshots import FieldsOnly
-from beamdyn.equations.discretization import ArcQuadrature, Cells, RootConditions, SampledSpace, product_of
+from beamdyn.equations.discretization import ArcQuadrature, Cells, RootConditions, SampledSpace, SampledSpaces
 from beamdyn.equations.moment_functions import MomentSpace, MomentSpaces
 from beamdyn.scene.beam import Beam
-from beamdyn.scene.profile import Profile, merge_breakpoints
+from beamdyn.scene.profile import merge_breakpoints
 
 
 @dataclass(frozen=True)
-class NearbySpaces(FieldsOnly):
+class NearbySpaces(FieldsOnly, SampledSpaces):
     """Function spaces of one beam on another.
 
     Parameters
@@ -36,12 +36,6 @@ class NearbySpaces(FieldsOnly):
     def functions(self, conditions: RootConditions) -> NearbySpace:
         """Return the trial functions of the one beam that satisfy conditions at the root."""
         return _build_space(self, conditions)
-
-    def product(
-        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
-    ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
-        return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
     def across(self) -> int:

@@ -41,8 +41,8 @@ from beamdyn.equations.discretization import (
     Cells,
     RootConditions,
     SampledSpace,
+    SampledSpaces,
     Sampler,
-    product_of,
 )
 from beamdyn.equations.mass import PiecewisePolynomials, axial_tension
 from beamdyn.scene.beam import Beam
@@ -75,7 +75,7 @@ _COUPLED = {
 
 
 @dataclass(frozen=True)
-class MomentSpaces(FieldsOnly):
+class MomentSpaces(FieldsOnly, SampledSpaces):
     """Function spaces on a beam, with functions defined by bending moments and other internal forces.
 
     Parameters
@@ -96,12 +96,6 @@ class MomentSpaces(FieldsOnly):
     def functions(self, conditions: RootConditions) -> MomentSpace:
         """Build trial functions that satisfy conditions at the root."""
         return _build_space(self, conditions)
-
-    def product(
-        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
-    ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
-        return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
     def across(self) -> int:

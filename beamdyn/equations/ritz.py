@@ -15,7 +15,7 @@ from numpy.polynomial import legendre
 
 from beamdyn.common.inputs.checks import count, one_of, set_fields
 from beamdyn.common.numerics import gauss_points_on, gauss_weights_on
-from beamdyn.equations.discretization import Cells, RootConditions, SampledSpace, product_of
+from beamdyn.equations.discretization import Cells, RootConditions, SampledSpace, SampledSpaces
 from beamdyn.equations.moment_functions import MomentSpaces
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
@@ -124,7 +124,7 @@ class Ritz:
 
 
 @dataclass(frozen=True)
-class RitzSpaces:
+class RitzSpaces(SampledSpaces):
     """Function spaces of one Ritz basis with one quadrature rule; each space is built once and cached.
 
     Parameters
@@ -147,12 +147,6 @@ class RitzSpaces:
     def functions(self, conditions: RootConditions) -> RitzSpace:
         """Build trial functions that satisfy conditions at the root."""
         return _build_space(self, RootConditions(conditions.held, conditions.derivatives))
-
-    def product(
-        self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
-    ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
-        return product_of(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
     def fewer_across(self) -> int:

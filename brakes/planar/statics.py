@@ -480,8 +480,7 @@ def free_body(equilibrium: Equilibrium, body: str, index: int = 0) -> tuple[Acti
     one_of("body", body, (*mechanism.bodies, GROUND))
     index = count("index", index, most=len(equilibrium.position.batch) - 1, least=0)
     place = Position(mechanism, equilibrium.position.batch[index])
-    size = np.atleast_2d(equilibrium.multiplier)[index]
-    system = mechanism.system
+    size, system = np.atleast_2d(equilibrium.multiplier)[index], mechanism.system
 
     def act(name: str, row: Row, size: float) -> list[Action]:
         return [Action(name, *effect) for effect in row.effects(size, place, body)]

@@ -11,6 +11,7 @@ from numpy.polynomial import Polynomial
 
 import beamdyn as bd
 from beamdyn.scene.numbers import with_numbers
+from beamdyn.studies.beside_data.free_numbers import free_numbers
 from benchmarks.cases.identified import OUTWARD, SPEEDS, identify, measured, unknowns
 
 MATERIAL = {"beam.youngs_modulus": None, "beam.density": None}
@@ -44,6 +45,12 @@ def test_physics_that_is_chosen_automatically_is_that_of_the_fit():
     )
     longer = bd.Scene(replace(beam, length=1.0), physics="auto")
     assert bd.identify(longer, data, {"beam.length": (0.9, 1.1)}).value == pytest.approx([1.02], rel=1e-6)
+
+
+def test_the_place_of_a_point_is_sought_on_the_beam():
+    strip = bd.Beam.rectangular(0.5, 0.05, 0.004, 2e11, 7850.0, point_masses=[bd.PointMass(0.4, 0.05)])
+    (place,) = free_numbers(bd.Scene(strip), {"beam.point_mass[0].position": None})
+    assert place.bounds[1] == 0.5
 
 
 def test_intervals_cover_the_numbers_behind_noisy_data():

@@ -6,7 +6,7 @@ import numpy as np
 import scipy.linalg
 from scipy.linalg.lapack import zheevr
 
-from beamdyn.modes.modal.springs import REAL
+from beamdyn.modes.modal.springs import SPLIT_ROOT
 
 _EPS = np.finfo(float).eps
 _MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix, below which it is 0 within rounding
@@ -59,7 +59,9 @@ def select_lowest(inverse: np.ndarray, z: np.ndarray, count: int) -> tuple[np.nd
     Each mode has two eigenvalues, of which one is selected: of a conjugate pair, that with Im s > 0; of a
     growing and a decaying one, the growing one; of two decaying ones, the slower one.
     """
-    inverse = np.where(np.abs(np.real(inverse)) < REAL * np.abs(inverse), 1j * np.imag(inverse), inverse)
+    inverse = np.where(
+        np.abs(np.real(inverse)) < SPLIT_ROOT * np.abs(inverse), 1j * np.imag(inverse), inverse
+    )
     inverse = np.where(inverse == 0, _EPS * np.abs(inverse).max(), inverse)
     s = 1 / inverse
     oscillating = np.flatnonzero(s.imag > 0)

@@ -23,7 +23,9 @@ _GRADED_AT_REST = 1e-12
 _UNDAMPED = 1e-6
 # Ratio of the smallest squared speed that is tried to that at which rotation affects the stiffness.
 _SMALLEST_TRIAL = 1e-12
-REAL = 1e-8  # part of an eigenvalue, over its magnitude, that counts as rounding of a double root
+# Part of an eigenvalue, real or imaginary, over its magnitude, below which it is 0: rounding splits a double
+# root by the square root of the rounding error.
+SPLIT_ROOT = 1e-8
 # Ratio of a squared frequency to the squared speed below which the beam turns freely, within rounding.
 _NEUTRAL = 1e-12
 
@@ -135,7 +137,7 @@ def other_eigenvalues(inverse: np.ndarray, rates: np.ndarray) -> np.ndarray:
     others = order[: len(order) - len(rates) - int((rates == 0).sum())]
     for rate in rates[rates > 0]:
         s = 1 / inverse[others]
-        apart = np.where(np.abs(s.imag) < REAL * np.abs(s), np.abs(s + rate), np.inf)
+        apart = np.where(np.abs(s.imag) < SPLIT_ROOT * np.abs(s), np.abs(s + rate), np.inf)
         if np.isfinite(apart).any():
             others = np.delete(others, apart.argmin())
     return np.sort(others)
