@@ -60,6 +60,37 @@ def test_a_tapered_beam_bends_as_the_root_of_the_speed_beyond_buckling(
     assert np.ptp(slope) < 1e-3 * np.abs(slope).max()
 
 
+def _stepped() -> tuple[bd.Scene, float]:
+    """Build a beam of three segments on its bent branch; also compute its critical speed [rad/s]."""
+    stations = [0, 0.3, 0.7, 1]
+    mass, stiffness = bd.Table(stations, [2, 1.5, 0.8, 0.3]), bd.Table(stations, [3, 1, 0.2, 0.03])
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, mass, stiffness), bd.Mount(1.5))
+    bent = replace(scene, physics=bd.Physics(large_deflection=True, branch="bent"))
+    return bent, float(bd.critical_speed(scene))
+
+
+@pytest.mark.parametrize("beyond", [1e-7, 1e-6, 6e-6, 5e-5])
+def test_a_basis_is_chosen_that_buckles_below_the_speed(beyond: float) -> None:
+    # With five functions on each segment, the beam buckles 5e-7 beyond the critical speed; with three, 6e-5.
+    scene, critical = _stepped()
+    slope, reference = (
+        abs(bd.equilibrium(scene, critical * (1 + d)).tip_angle) / d**0.5 for d in (beyond, 1e-4)
+    )
+    assert slope == pytest.approx(reference, rel=1e-3)  # the law above, where a d is below 1e-3
+
+
+def test_an_equilibrium_that_a_coarser_basis_lacks_has_no_known_error() -> None:
+    scene, critical = _stepped()
+    found = bd.equilibrium(scene, critical * (1 + 3e-5), discretization=bd.Ritz(5))
+    assert np.isfinite(found.tip).all() and found.error == np.inf
+
+
+def test_a_speed_just_below_the_critical_one_has_no_bent_equilibrium() -> None:
+    scene, critical = _stepped()
+    with pytest.raises(bd.NoEquilibrium, match="no equilibrium beside"):
+        bd.equilibrium(scene, critical * (1 - 1e-6))
+
+
 @pytest.mark.parametrize("setting_angle", [1e-8, 1e-7, 1e-6, 1e-5])
 @pytest.mark.parametrize("beyond", [1e-7, 1e-6, 1e-5, 4e-5, 8e-5])
 def test_the_bent_equilibrium_just_past_its_fold_is_the_stable_one(

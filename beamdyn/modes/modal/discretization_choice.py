@@ -47,6 +47,8 @@ _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
 _ON_EACH, _ON_LAYERS = 4, 8
 _SHORT = 0.02  # length of a segment as x/L below which elements of a quarter of it lose digits by rounding
 _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers
+# Largest ratio of all further changes of a critical speed to its change by the next finer model.
+_ALL_FURTHER = 2.0
 _MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"
 # Smallest number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode.
@@ -178,6 +180,8 @@ def _choose(
         return next(models), None
     # A model has fewer modes than functions if some functions are linear combinations of others.
     first = next(m for m in models if m.solver.size >= modes or refine_model(m) is None)
+    if scene.physics.branch == "bent":
+        first = _refine_until_buckled(first, float(ends[0]))
     reached = within_reach(first.discretization, target)
     at_ends = refine(
         solve_with_error(first, ends, modes),
@@ -185,6 +189,19 @@ def _choose(
         lambda found: found.meet(reached),
     )
     return at_ends.model, at_ends
+
+
+def _refine_until_buckled(model: Model, speed: float) -> Model:
+    """Refine a model while its straight beam buckles above a speed [rad/s], but finer ones perhaps below."""
+
+    def finer(model: Model) -> Model | None:
+        refined = refine_model(model)
+        if refined is None:
+            return None
+        critical, lower = model.deflected.critical_speed, refined.deflected.critical_speed
+        return refined if critical - speed < _ALL_FURTHER * (critical - lower) else None
+
+    return refine(model, finer, lambda found: found.deflected.critical_speed <= speed)
 
 
 def affordable_target(scene: Scene, discretization: DiscretizationChoice, target: float) -> float:

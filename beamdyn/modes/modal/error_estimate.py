@@ -106,7 +106,10 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
+    stated = np.full((len(speeds), modes), np.inf)
     compared = coarse.shape[1]  # there may be fewer independent moment functions than modes
+    if not compared:
+        return EstimatedModes(model, fine, stated)
     s = fine.eigenvalue[:, :compared]
     squared, of_coarse = s**2, coarse**2
     distance = squared - of_coarse
@@ -137,7 +140,6 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     if not resolved.all():
         resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
-    stated = np.full((len(speeds), modes), np.inf)
     stated[:, :compared] = np.where(resolved, error, np.inf)
     return EstimatedModes(model, fine, stated)
 
