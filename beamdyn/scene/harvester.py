@@ -227,7 +227,7 @@ class Harvester(FieldsOnly):
         if beam.electrodes is not None:
             bound = "the beam carries layers already, which these would overlap"
             raise InvalidValue("harvester.start", self.start, bound, "put one set on the bare beam", "m")
-        if beam.section is None:
+        if beam.section is None or beam.section.factors:
             remedy = Words(RECTANGULAR, " makes one")
             raise InvalidValue("harvester", "layers", "they need a beam of rectangular section", remedy)
         if beam.is_twisted:

@@ -290,8 +290,8 @@ def _scaled(beam: Beam, name: str, factor: float) -> Beam:
     if name in PROPERTY_UNITS and getattr(beam, name) is None:
         raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
     factor = positive(SCALE + name, factor)
-    if name in SIDES and beam.section is not None:
-        section = replace(beam.section, **{name: getattr(beam.section, name).scaled(factor)})
+    if beam.section is not None and name in (*SIDES, *beam.section.properties):
+        section = beam.section.scaled(name, factor)
         return replace(beam, section=section, **section.properties)
     powers = _SIDE_POWERS.get(name, {name: 1})
     there = {each: getattr(beam, each) for each in powers if getattr(beam, each) is not None}

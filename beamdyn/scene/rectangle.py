@@ -24,7 +24,7 @@ Laminate: Jones (1999), Mechanics of Composite Materials, chapter 4; docs/harves
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -32,6 +32,7 @@ import numpy as np
 
 from beamdyn.common.inputs.checks import real, refuse, set_fields, size
 from beamdyn.common.numerics import gauss_rule
+from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import Words
 from beamdyn.scene.names_elsewhere import FROM_STIFFNESS
 from beamdyn.scene.profile import ONE, Profile, as_profile, combine
@@ -65,6 +66,9 @@ class Rectangle:
         Density [kg/m3].
     poissons_ratio : float, optional
         Poisson's ratio, for shear stiffness, camber and torsion; None without these.
+    factors : tuple of pairs
+        Names of properties that differ from those of the rectangle, and the factors that multiply them.  The
+        stiffness of a plate is proportional to the bending stiffness, also in torsion.
     """
 
     width: Profile
@@ -72,6 +76,7 @@ class Rectangle:
     youngs_modulus: float
     density: float
     poissons_ratio: float | None = None
+    factors: tuple[tuple[str, float], ...] = field(default=(), metadata=ADDED_LATER)
 
     def __post_init__(self) -> None:
         modulus = size("youngs_modulus", self.youngs_modulus, "Pa")
@@ -87,7 +92,7 @@ class Rectangle:
         flat, edge = area * h * h, area * b * b
         axial, nu = area.scaled(e), self.poissons_ratio
         shear = None if nu is None else shear_stiffness_of_rectangle(axial, nu)
-        return {
+        made = {
             "mass_per_length": area.scaled(rho),
             "bending_stiffness": flat.scaled(e / 12),
             "axial_stiffness": axial,
@@ -98,6 +103,15 @@ class Rectangle:
             "rotary_inertia": flat.scaled(rho / 12),
             "second_rotary_inertia": edge.scaled(rho / 12),
         }
+        for name, factor in self.factors:
+            made[name] = made[name].scaled(factor)
+        return made
+
+    def scaled(self, name: str, factor: float) -> Rectangle:
+        """Multiply a side of the section, or one of its `properties`, by a factor."""
+        if name in SIDES:
+            return replace(self, **{name: getattr(self, name).scaled(factor)})
+        return replace(self, factors=(*self.factors, (name, factor)))
 
     @cached_property
     def torsion_factor(self) -> Profile:
@@ -108,8 +122,7 @@ class Rectangle:
     def torsion_stiffness(self) -> Profile:
         """Torsional stiffness G J [N m2] of the section (Saint-Venant); Poisson's ratio must be given."""
         assert self.poissons_ratio is not None, "torsion of a rectangle needs Poisson's ratio"
-        shear_modulus, t = self.youngs_modulus / (2 * (1 + self.poissons_ratio)), self.thickness
-        return (self.width * t * t * t * self.torsion_factor).scaled(shear_modulus / 3)
+        return self.properties["bending_stiffness"] * self.twist_factor
 
     @cached_property
     def twist_factor(self) -> Profile:

@@ -19,6 +19,7 @@ import beamdyn as bd
 from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.discretization import CLAMPED
 from beamdyn.equations.fields.strip import Strip
+from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.profile import ONE
 from beamdyn.scene.rectangle import Rectangle
 
@@ -358,3 +359,23 @@ def test_the_error_of_a_response_has_a_part_by_functions_across(monkeypatch):
     assert found.error.max() < 1e-2 * np.abs(found.response).max()
     small = bd.frequency_response(scene, **ask, discretization=bd.Ritz(5))  # without a basis that is narrower
     assert (np.abs(small.response - best.response) <= small.error + best.error).all()
+
+
+def test_a_factor_of_the_bending_stiffness_multiplies_that_of_the_plate():
+    """At rest all frequencies, also those of torsion, are as the square root of the stiffness."""
+    strip = bd.Beam.rectangular(0.05, Polynomial([0.012, -0.006]), 0.0002, **STEEL, poissons_ratio=0.3)
+    scene = bd.Scene(strip, physics=PLATE)
+    soft, stiff = (
+        bd.natural_modes(with_numbers(scene, {"beam.scale.bending_stiffness": factor}), modes=5)
+        for factor in (1.0, 4.0)
+    )
+    assert stiff.frequency == pytest.approx(2 * soft.frequency, rel=1e-10)  # rounding
+
+
+def test_frequencies_with_automatic_physics_do_not_jump_where_a_factor_is_one():
+    strip = bd.Beam.rectangular(0.05, Polynomial([0.012, -0.006]), 0.0002, **STEEL, poissons_ratio=0.3)
+    scene = bd.Scene(strip, bd.Mount(0.215), physics="auto")
+    study = bd.study(scene, {"beam.scale.bending_stiffness": [1 - 1e-6, 1.0, 1 + 1e-6]}, modes=1)
+    below, at, above = study.value.ravel()
+    assert at == pytest.approx((below + above) / 2, rel=1e-9)  # a smooth function: a second difference
+    assert above / below - 1 == pytest.approx(1e-6, rel=0.01)  # half of the stiffness' change

@@ -12,6 +12,7 @@ from beamdyn.common.edge.views import rows_of
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.described import Designs, VariedInput, check_designs
 from beamdyn.scene.numbers import number_at, units, with_numbers
+from beamdyn.scene.rectangle import SECTION_UNITS
 from tests.unit.toml_scenes import STRIP_TOML
 
 BEAM = {"length": 0.05, "width": 0.01, "thickness": 2e-4, "youngs_modulus": 200e9, "density": 7850.0}
@@ -70,9 +71,8 @@ def test_speed_alone():
 )
 def test_a_rectangular_beam_is_made_again_from_its_section(made):
     section = made.section
-    again = bd.Beam.rectangular(
-        length=made.length, **{name: getattr(section, name) for name in section.__dataclass_fields__}
-    )  # fmt: skip
+    given = {name: getattr(section, name) for name in SECTION_UNITS}
+    again = bd.Beam.rectangular(length=made.length, **given)
     assert again == made and again.section == section
     assert pickle.loads(pickle.dumps(made)).section == section
 
