@@ -180,7 +180,10 @@ class FemSpaces(FieldsOnly):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+
+        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        """
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
@@ -294,7 +297,10 @@ def _turn(xi: np.ndarray, order: int) -> np.ndarray:
 
 
 def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
-    """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+    """Integrate over x/L a weight times derivatives of two functions, one of `rows` and one of `columns`.
+
+    The result is a matrix over all pairs of functions; `orders` are the orders of the two derivatives.
+    """
     values = rows.weights(weight)
     assembled = _PRODUCTS[orders].assemble(columns.basis, rows.basis, weight=values)
     matrix = assembled.toarray()[np.ix_(rows.free, columns.free)]
@@ -305,7 +311,7 @@ def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple
     return matrix
 
 
-# Weak forms: scikit-fem defines their arguments, and has no types for them.
+# Weak forms: scikit-fem calls them, and has no type annotations for their arguments.
 
 
 def _derivative(u: Any, order: int) -> Any:

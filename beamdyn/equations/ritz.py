@@ -91,7 +91,8 @@ class Ritz:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
             return MomentSpaces(beam, self.functions, self.fewer)
-        # Gauss points on each segment: exact for Legendre functions, more than enough for eigenfunctions.
+        # Degree for which Gauss points are chosen: integrals of Legendre functions are then exact, and
+        # eigenfunctions have more than enough points.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
         points, across = degree + 2 + weight_degree(beam) // 2, min(self.functions - 2, _MOST_ACROSS)
         return RitzSpaces(self, tuple(beam.breakpoints), points, max(2, across))
@@ -104,7 +105,10 @@ class Ritz:
         return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
-        """Return a smaller basis, whose results differ from this one's by more than this one's error."""
+        """Return a smaller basis, for the error estimate.
+
+        Its results differ from those of this basis by more than the error of the latter.
+        """
         return Ritz(self.fewer, self.basis)
 
     @property

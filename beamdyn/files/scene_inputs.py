@@ -131,7 +131,7 @@ def with_physics_as_table(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def _auto_as_table(given: Any) -> Any:
-    """Return the table that means the same as the word "auto"."""
+    """Return a table with the same meaning if the word "auto" is given, else the given value."""
     if isinstance(given, Mapping):
         return given
     if given != AUTO_NAME:
@@ -144,7 +144,7 @@ def _in_a_list(key: str) -> BeforeValidator:
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
-            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets, one for each")
+            raise InvalidInput("", dict(given), f"give each one a table [[beam.{key}]], in double brackets")
         return given
 
     return BeforeValidator(refuse_one)
@@ -417,7 +417,7 @@ def _one_kind_of_beam(given: Any) -> Any:
     keys = given.keys() if isinstance(given, dict) else set()
     section, stiffness = ([k for k in _own(kind) if k in keys] for kind in (RectangularInput, StiffnessInput))
     if "matrices" in keys and section + stiffness:
-        raise ValueError(f"matrices has {', '.join(section + stiffness)}, too; give one of the two")
+        raise ValueError(f"give either matrices or {', '.join(section + stiffness)}, not both")
     if section and stiffness:
         raise ValueError(
             f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "

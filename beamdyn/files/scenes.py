@@ -52,7 +52,8 @@ def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[
     Raises
     ------
     ConfigError
-        If a number has no line of its own that could be replaced: an entry of a list, or a factor.
+        If a number has no line of its own that could be replaced, as an entry of a list, or the factor
+        "scale" on a property along the beam.
     """
     lines = text.splitlines()
     for path, value in values.items():

@@ -112,11 +112,13 @@ _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.nd
 _FIRST = 4
 _ACCURATE = 8  # number of modes for which trial functions are first chosen at the default tolerance
 _MOST = 40  # number of modes beyond which a model is not refined further
-# Allowed error of natural frequencies over that of a response: resonance magnifies errors of frequency.
+# Allowed error of natural frequencies, divided by that of a response: resonance magnifies errors of
+# frequency.
 _OF_FREQUENCIES = 0.01
 # Tolerance at and below which the default models are used, with a margin for rounding.
 _DEFAULT = 1.001 * DEFAULT_TARGET
-# Factor on the tolerance for trial functions after the error of a response exceeded its tolerance.
+# Factor on the tolerance of natural frequencies, by which trial functions are chosen, each time that the
+# error of a response exceeds its tolerance.
 _FINER = 1e-3
 _MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass matrix, relative to the largest
 _ROUNDING = 1e-12  # rounding error of a value relative to the largest value
@@ -265,7 +267,10 @@ def _add_modes(
         return doubled(larger, finer)
 
     def settles(found: _Doubled) -> bool:
-        """Return whether more modes change the value by at most tolerance / margin, over its largest."""
+        """Return whether twice as many modes change the value by less than the tolerance allows.
+
+        The tolerance is divided by a margin, and is relative to the largest value.
+        """
         _, value, _, finer = found
         share = tolerance / LINEAR_MODES.factor
         return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())
@@ -305,7 +310,9 @@ def _with_error(
         value
     ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
     error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
-    if model.scene.models_width:  # meshes, and the largest bases, differ along the beam alone
+    # The coarser mesh or basis may have as many functions across the width, so that these need a comparison
+    # too.
+    if model.scene.models_width:
         narrow = FewerAcross(model.discretization)
         fewer = evaluate(ModelAtSpeed(Model(model.model.scene, narrow), model.speed, model.modes))
         known = narrow.has_fewer_of_both(model.scene.modelled_beam)

@@ -144,7 +144,8 @@ def pole_integrals(
         f, w = (start + end) / 2 + half * _POINTS, half * _WEIGHTS
         S = weighted(piece, f)
         near = np.abs(mu - np.clip(np.real(mu), start, end)) < _NEAR * 2 * half
-        # The density at a pole; at a pole far from all parts of the piece, a power law may overflow.
+        # The density at each pole that is near.  A pole far from all parts of the piece is replaced by the
+        # end of the piece, as a power law may overflow there.
         at_pole = near * weighted(piece, np.where(near.any(axis=0), mu, piece.end))
         smooth = (S[..., None] - at_pole[:, None]) / (f[..., None] - mu)
         whole += float((w * S).sum())

@@ -152,7 +152,7 @@ class ModelAtSpeed(FieldsOnly):
         for name, shape in kept.shapes.items():
             shapes[full.blocks[name], kept.blocks[shape.block]] = shape.matrix
         if kept.voltage is not None and (circuit := self._mechanical.circuit) is not None:
-            for name, bent in circuit.bent.items():  # voltage also bends the beam in the modes left out
+            for name, bent in circuit.bent.items():  # the voltage also deflects the modes left out
                 shapes[full.blocks[name]] += np.outer(bent, kept.voltage.row)
         return shapes
 
@@ -252,7 +252,7 @@ class ModelAtSpeed(FieldsOnly):
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
 
     def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
-        """Express an output of layers by the coordinates of all trial functions, and by the retained ones.
+        """Express an output of piezoelectric layers by all trial functions, and by the retained coordinates.
 
         Return the row for all functions, the order of the time derivative to which both rows apply, and the
         row for retained coordinates.  Where the circuit has a coordinate, the row for all functions applies
@@ -309,7 +309,7 @@ class ModelAtSpeed(FieldsOnly):
         return observation.per_moment(self.scene) if isinstance(observation, StrainAtRoot) else 1.0
 
     def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
-        """Sum the rows of all quantities of root motion, times each at the speed; `zero` if there is none."""
+        """Sum the rows of all quantities of root motion, each times its value at the speed, plus `zero`."""
         root, total = self._root, zero
         for quantity, row in by_quantity.items():
             total = total + float(getattr(root, quantity)) * row
@@ -324,9 +324,10 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
-# Distance between a pole of the two coarser models, relative to the pole, above which it is not used; and the
-# least assumed ratio of the distance between the two finer models to it: several fields, segments or elements
-# do not converge as steadily as one.
+# The error of a pole is estimated from three models: a fine, a coarse and a coarser one. _STEADY: relative
+# distance between the poles of the coarse and the coarser model above which it is not used. _LEAST_RATIO:
+# smallest assumed ratio of the distance between fine and coarse to that between coarse and coarser, as
+# several fields, segments or elements do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 
@@ -334,10 +335,13 @@ _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the mat
 def pole_errors(model: ModelAtSpeed) -> np.ndarray:
     """Estimate the relative errors of the poles of a model, in the order of `FreeMotion.poles`.
 
-    The error by modes left out, through damping and gyroscopic terms, is a pole's distance from its partner
-    among the poles of all functions; these are compared with those of two coarser discretizations.  An
-    infinite pole, of a coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf; the
-    first unresolved pole above a resolved one makes all poles of larger magnitude unresolved, too.
+    The error has two parts.  Modes that are left out change a pole through damping and gyroscopic terms: this
+    part is its distance from the corresponding pole of a model with all functions.  The error of the
+    discretization is estimated by comparing the latter pole with those of two coarser discretizations.
+
+    An infinite pole, of a coordinate without mass, has the error nan.  A pole with an error beyond 1 % is
+    unresolved, and has the error inf; the first unresolved pole above a resolved one makes all poles of
+    larger magnitude unresolved, too.
     """
     kept, fine, coarse = model.free_motion, model.model, model.model.coarser
     whole, *coarser = (
@@ -362,7 +366,10 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
 
 
 def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pair each pole with another model's pole; return distances [1/s] (inf if unpaired) and partners."""
+    """Pair each pole with a pole of another model, and return their distance [1/s] and the other pole.
+
+    A pole without a partner has the distance inf, and is itself returned as the other pole.
+    """
     apart = np.abs(poles[:, None] - others)
     scale = np.maximum(np.abs(poles), _ROUNDING * np.abs(poles).max(initial=0.0))[:, None]
     rows, partners = linear_sum_assignment(apart / np.where(scale == 0, 1.0, scale))

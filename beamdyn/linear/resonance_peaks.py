@@ -24,12 +24,13 @@ from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.transfer import ModalSum, modal_sums, respond
 
 _TURN = 2 * np.pi
-_DENSE = 0.1  # step of samples over the distance to the nearest pole
-_HALVINGS = 60  # number of halvings of an interval, which reach rounding
+_DENSE = 0.1  # distance between samples, divided by the distance to the nearest pole
+_HALVINGS = 60  # number of halvings after which an interval is as short as rounding errors
 _UNDAMPED = 1e-10  # largest damping ratio that is 0 within rounding
 _ROUNDING = 1e-9  # relative accuracy of frequency, magnitude and bandwidth of a peak
 _SHARE = 0.1  # accuracy of a peak's values, as a fraction of the tolerance
-# Height of a peak above the neighbouring minima, over its magnitude, below which it counts as rounding.
+# Height of a peak above the neighbouring minima, divided by its magnitude, below which it is a rounding
+# error.
 _LEVEL = 1e-10
 # Relative difference between the sum over modes and the solution of the equations, above which the response
 # is only rounding error.
@@ -69,9 +70,9 @@ class ResonancePeaks:
     harmonic : ndarray of int, shape (p,)
         Harmonics of the rotation in the response.
     frequency_error, size_error, bandwidth_error : ndarray, shape (p,)
-        Estimated errors, by the distance from the nearest peak of a coarser discretization and, where modes
-        are left out, of more modes; inf where these have none, or no bandwidth, and nan of a magnitude that
-        is inf or a width that is nan.
+        Estimated errors: the distance from the nearest peak of a model with a coarser discretization and,
+        where modes are left out, of a model with more modes.  They are inf if such a model has no peak, or
+        its peak no bandwidth.  The error of an infinite magnitude, or of a bandwidth that is nan, is nan.
     """
 
     frequency: np.ndarray
@@ -272,9 +273,10 @@ def _bisect(
     origin: np.ndarray,
     share: float,
 ) -> np.ndarray:
-    """Bisect p intervals for the end of a condition that holds at their start.
+    """Find, in each of p intervals, where a condition that holds at the start ceases to hold: shape (p,).
 
-    The accuracy is the fraction `share` of the distance from `origin`.
+    `as_at_start(x)` returns whether it holds at the positions x (p,).  The intervals are bisected until they
+    are shorter than the fraction `share` of their distance from `origin`.
     """
     for _ in range(_HALVINGS):
         if (np.abs(end - start) <= share * np.abs(end - origin)).all():

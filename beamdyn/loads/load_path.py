@@ -24,8 +24,9 @@ _COMPARED = 4000  # largest number of times at which two simulations are compare
 _BATCH = 500  # number of times evaluated at once
 _REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and of grid points in each
 _OF_TURNING_POINTS = 2  # number of refinements of a turning point: values within 1e-6 of the largest range
-_BETWEEN_SAMPLES = 4  # times per sample of the run at which turning points are sought
-# Time before a segment's end, in its durations, at which loads are evaluated: at the end they may jump.
+_BETWEEN_SAMPLES = 4  # number of times for each sample of the run at which turning points are sought
+# Time before the end of a segment at which loads are evaluated, as a fraction of its duration: at the end
+# itself they may jump.
 _BEFORE_JUMP = 1e-9
 
 
@@ -206,7 +207,7 @@ def largest_per_coordinate(
     Each coordinate vibrates at its frequency [rad/s]; the bounds (S, K, n) sum the largest contributions
     of all quantities of the root's motion.
     """
-    # There are several samples in each time step, and time steps are short during a shock.
+    # Maxima over the samples suffice: each time step has several samples, and steps are short during a shock.
     root = system.root(path.samples[0])
     total = np.zeros((*rows.shape, system.size))
     for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):

@@ -266,7 +266,7 @@ def _lacks_camber(scene: Scene) -> bool:
 def refuse_uncovered_camber(scene: Scene) -> None:
     """Refuse camber if loads along the span cannot be computed with it."""
     if scene.physics.camber and _lacks_camber(scene):
-        instead = 'it was chosen by "auto": give the physics without it'
+        instead = 'physics = "auto" has chosen it: give the physics without it'
         remedy = _LEAVE_OUT if scene.physics_choice is None else instead
         raise InvalidValue("physics.camber", True, _OF_TAPERED, remedy)
 

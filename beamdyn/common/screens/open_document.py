@@ -295,7 +295,10 @@ class OpenDocument:
         return ShownAnswer(answer, shown, notes, entries, headline, perf_counter() - start)
 
     def keep(self, screen: Screen, outcome: Outcome) -> bool:
-        """Store a new result, or else the errors beside the last result; return whether one is new."""
+        """Store the outcome of a computation: a result, or errors; return whether it is a result.
+
+        Errors are stored in addition to the last result, which remains.
+        """
         found = isinstance(outcome, ShownAnswer)
         if found:
             self.answered[screen.name] = outcome
@@ -303,8 +306,8 @@ class OpenDocument:
         return found
 
     def solve(self, screen: Screen) -> bool:
-        """Compute the result for the present field texts, and store it or the errors.
+        """Compute the result for the present field texts, and store the result or, if it fails, the errors.
 
-        Return whether there is a result.
+        Return whether the computation gave a result.
         """
         return self.keep(screen, self.attempt(screen))

@@ -335,10 +335,15 @@ class BentState(FieldsOnly):
 
     @cached_property
     def _known(self) -> dict[tuple[tuple[Quantity, float], ...], bent_beam.Work]:
-        return {}  # a cached function would keep the state and its arrays alive by referring to it
+        # A dictionary, since a function with a cache would refer to this state and so keep its arrays in
+        # memory.
+        return {}
 
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
-        """Compute forces at the stations: `values["unity"]` times the tip load if given, else of inertia."""
+        """Compute the forces at the stations for given quantities of root motion: the inertial forces.
+
+        If "unity" is given, return minus that fraction of the tip load instead.
+        """
         if "unity" in values:
             assert self.of.load is not None
             return self.of.load.on(self.bent, -values["unity"])
@@ -365,7 +370,10 @@ class BentState(FieldsOnly):
         return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, -force, linear.shift, linear.planes)
 
     def linearized(self) -> Equations:
-        """Return the equations of small motions about this state, with minus its elastic force as a load."""
+        """Return the equations of small motions about this state.
+
+        Minus the elastic force of the state is one of the loads, so that they add up to 0 in equilibrium.
+        """
         linear = self.of.linear
         terms = [
             *terms_of_blocks(linear, "mass", self.bent.mass, 2),
@@ -389,7 +397,7 @@ class BentState(FieldsOnly):
         return replace(linear, deflections=deflections, shapes=shapes, coarse=None, **given)
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
-        """Split a left-hand-side force into right-hand-side loads, one for each coordinate block."""
+        """Split a left-hand-side force into loads on the right-hand side, one for each coordinate block."""
         for row, i in self.of.linear.blocks.items():
             yield Load(name, row, vector[i], quantity, -1.0)
 

@@ -197,7 +197,10 @@ class _CoupledMatrix(NamedTuple):
     mirrored: float = 1.0
 
     def placed(self) -> Iterator[tuple[tuple[str, str, Quantity, int], np.ndarray]]:
-        """Yield the matrix and, unless `mirrored` is 0, its transpose times `mirrored`, with field names."""
+        """Yield the matrix and, unless `mirrored` is 0, its transpose times `mirrored`.
+
+        With each comes a key: field of the rows, field of the columns, quantity and order of the term.
+        """
         yield (self.rows, self.columns, self.quantity, self.order), self.matrix
         if self.mirrored:
             place = self.columns, self.rows, self.quantity, self.order
@@ -267,7 +270,11 @@ class Offsets:
 
     @cached_property
     def _parametric(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """Accelerations of the axis that change the stiffness; only axial ones if there are no others."""
+        """Accelerations of the axis, as in `accelerations`, that change the stiffness.
+
+        In steady rotation without gravity, if the beam points inward or outward, only those along the beam
+        are returned, as the others are 0.
+        """
         scene = self.scene
         steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
         if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
@@ -422,7 +429,10 @@ class Offsets:
                     yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
     def _tightened(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of axial forces on masses off the axis, by slopes of the beam."""
+        """Yield the stiffness matrices due to the axial force by the acceleration of masses beside the axis.
+
+        Like any axial force, this force does work on the slope of the beam.
+        """
         ahead = self._tip[0].offset
         parametric = [quantity for quantity, _, _ in self._parametric]
         for quantity, matrix in self._beside_axis:

@@ -239,7 +239,10 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Refuse matrices not symmetric and positive definite, and masses that no rigid section has."""
+    """Raise an error for a matrix that is not symmetric and positive definite.
+
+    Also raise an error for a mass matrix that no rigid section has.
+    """
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
@@ -247,7 +250,7 @@ def _check_matrices(
     ]
     if name == "mass":
         wanted = (
-            "m on the diagonal, m times the centre beside it, and the sum of the others as inertia about z"
+            "that of a rigid section: m on the diagonal, m times the mass centre beside it, Izz = Ixx + Iyy"
         )
         is_bad = (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS)
         checks += [(is_bad, wanted)]
