@@ -286,11 +286,11 @@ class Equations:
         return root_motion(self.mount, sample, self.gravity)
 
     def matrix(self, order: int, root: RootMotion) -> np.ndarray:
-        """Compute the matrix of the `order`-th time derivative of q at each of the times."""
+        """Compute the matrix of the `order`-th time derivative of q at all times of the root's motion."""
         return _sum_over_quantities(self.matrices[order], root, (self.size, self.size))
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Compute the right-hand side of the equations at each of the times."""
+        """Compute the right-hand side of the equations at all times of the root's motion."""
         return _sum_over_quantities(self.vectors, root, (self.size,))
 
     def steady(self) -> SteadyPencil:

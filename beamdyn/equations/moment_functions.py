@@ -111,7 +111,7 @@ class MomentSpaces(FieldsOnly, SampledSpaces):
         return self.coarse
 
     def shares_functions(self, other: MomentSpaces) -> bool:
-        """Whether other spaces have the same beam and sizes: cells and forces depend on all stiffnesses."""
+        """Whether other spaces have an equal beam and equal sizes, on all of which the functions depend."""
         return self == other
 
     @cached_property

@@ -98,7 +98,7 @@ class Ritz:
         return RitzSpaces(self, tuple(beam.breakpoints), points, max(2, across))
 
     def cells(self, beam: Beam) -> Cells:
-        """Return the segments as cells, with enough points for cosines of slopes of several turns."""
+        """Return the segments as cells, with enough Gauss points for cosines of angles of several turns."""
         spaces = self.spaces(beam)
         if isinstance(spaces, MomentSpaces):
             return Cells(spaces.cells, _POINTS_OF_MOMENTS)
@@ -154,7 +154,7 @@ class RitzSpaces(SampledSpaces):
 
     @property
     def fewer_across(self) -> int:
-        """Number of functions across in the coarser basis: one less of torsion, and one less of camber."""
+        """Number of functions across the width in the coarser basis: one of torsion and of camber less."""
         return max(2, self.across - 2)
 
     def shares_functions(self, other: RitzSpaces) -> bool:

@@ -104,7 +104,7 @@ def _only(table: CsvTable, name: str, what: str) -> float:
 
 
 def _speed(table: CsvTable, given: float | None) -> float | None:
-    """Return the speed in the file [rad/s], if it has none the given one, which may be None."""
+    """Return the speed in the file [rad/s]; if the file has none, return the given speed or None."""
     if "speed" not in table.named():
         return given
     if given is not None:

@@ -144,7 +144,7 @@ def _in_a_list(key: str) -> BeforeValidator:
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
-            raise InvalidInput("", dict(given), f"give each one a table [[beam.{key}]], in double brackets")
+            raise InvalidInput("", dict(given), f"give one table [[beam.{key}]] for each, in double brackets")
         return given
 
     return BeforeValidator(refuse_one)
@@ -201,7 +201,7 @@ class _BeamInput(CoreSection):
 
 
 class RectangularInput(_BeamInput):
-    """[beam]: a beam of rectangular section."""
+    """The table [beam] for a beam of rectangular section."""
 
     width: Annotated[Along, Varying("m", "b", "width of the section", above=0)]
     thickness: Annotated[Along, Varying("m", "h", "thickness, in the direction of bending", above=0)]
@@ -227,7 +227,7 @@ class RectangularInput(_BeamInput):
 
 
 class StiffnessInput(_BeamInput):
-    """[beam]: a beam of any section, by its stiffness."""
+    """The table [beam] for a beam of any section, described by its stiffness."""
 
     mass_per_length: Annotated[Along, Varying("kg/m", "rho A", "mass per length", above=0)]
     bending_stiffness: Annotated[Along, Varying("N m2", "E I", "bending stiffness", above=0)]
@@ -282,7 +282,7 @@ class StiffnessInput(_BeamInput):
 
 
 class MatricesInput(_BeamInput):
-    """[beam]: a beam of sections that couple all strains, by their 6 x 6 matrices."""
+    """The table [beam] for a beam whose sections couple all strains, described by 6 x 6 matrices."""
 
     matrices: Annotated[
         list[list[Any]],
@@ -437,7 +437,7 @@ BeamInput = Annotated[
 
 
 class ModelInput(Section):
-    """[model]: what the model includes."""
+    """The table [model]: modal damping ratio and gravity."""
 
     damping_ratio: Annotated[
         float,
@@ -447,7 +447,7 @@ class ModelInput(Section):
 
 
 class SceneInput(CoreSection):
-    """A scene: the tables [beam], [mount], and where wanted [harvester] and others."""
+    """A scene file: the tables [beam] and [mount], and optional tables such as [harvester]."""
 
     beam: BeamInput
     mount: _MountInput

@@ -108,7 +108,9 @@ _STATION_NAMES |= {plain_name(head): name for name, heads in _HEADS.items() for 
 
 
 def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None) -> CsvTable:
-    """Read stations from a CSV file: its columns by keys of the beam; positions must ascend.
+    """Read a CSV file of stations as a table whose columns have the names of the keys in [beam].
+
+    The positions must ascend.
 
     Parameters
     ----------

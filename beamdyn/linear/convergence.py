@@ -108,7 +108,8 @@ Evaluation = Callable[[ModelAtSpeed], np.ndarray]
 # A model, its value, the model with twice as many modes (None if there is none), and that model's value.
 _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
-# Least number of modes for modes="auto"; at a loose tolerance, trial functions are first chosen for these.
+# Smallest number of modes for modes="auto"; at a loose tolerance, trial functions are first chosen for so
+# many.
 _FIRST = 4
 _ACCURATE = 8  # number of modes for which trial functions are first chosen at the default tolerance
 _MOST = 40  # number of modes beyond which a model is not refined further

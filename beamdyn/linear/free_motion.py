@@ -162,7 +162,10 @@ def _diagonal(M: np.ndarray, K: np.ndarray, shift: float) -> BalancedCoordinates
 
 
 def _safe_shift(M: np.ndarray, K: np.ndarray) -> float:
-    """Choose a shift, of the highest frequencies' size, with which K + shift^2 M is positive definite."""
+    """Choose a shift [1/s] with which K + shift^2 M is positive definite.
+
+    It is about as large as the highest frequencies.
+    """
     mass, stiffness = np.diag(M), np.abs(np.diag(K))
     massive = mass > _MASSLESS * mass.max()
     shift = np.sqrt(np.max(stiffness[massive] / mass[massive]) or 1.0)

@@ -271,7 +271,7 @@ def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
     An excitation of fixed direction is refused, because its input matrix would vary as the beam turns.
     """
     drives = model.drives(excitation)
-    bound = "on the rotating beam it acts at its frequency plus and minus the speed, not by a constant matrix"
+    bound = "on the rotating beam its input matrix varies: it acts at its frequency plus and minus the speed"
     remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts it'
     refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
     return drives[0]

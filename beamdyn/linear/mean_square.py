@@ -47,8 +47,8 @@ from beamdyn.linear.spectra import PowerSpectrum, SpectrumPiece
 from beamdyn.scene.scene import Scene
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-# Distance of a pole from a piece of the spectrum, over the piece's length, below which the pole is integrated
-# separately.
+# Distance of a pole from a piece of the spectrum, divided by the piece's length, below which the pole is
+# integrated separately.
 _NEAR = 1.5
 _UNDAMPED = 1e-12  # ratio of a pole's decay rate to its size below which the decay counts as rounding
 

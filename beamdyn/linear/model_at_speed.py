@@ -1,9 +1,9 @@
 """The linear equations of a scene at one steady speed, in modes at that speed and their residual flexibility.
 
 The coordinates are those of the lowest modes at the speed, without damping and gyroscopic coupling, or of all
-trial functions of the discretization.  What modes leave out follows a slow excitation without delay: its
-static deflection is that of all functions minus that of the modes, the residual flexibility (Craig and
-Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).
+trial functions of the discretization.  The modes that are left out follow a slow excitation without delay.
+Their static deflection, the residual flexibility, is the deflection of all functions minus that of the
+retained modes (Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).
 
 In shapes of arrays, n counts retained coordinates, and N all trial functions.
 """
@@ -192,7 +192,7 @@ class ModelAtSpeed(FieldsOnly):
             load += full.deflection(np.array(force[:1]), direction=force[1])[:, 0]
         load = load if np.imag(load).any() else np.real(load)
         if not load.any():
-            bound = "it does not load the beam: it acts along it, or in a direction in which it is rigid"
+            bound = "no load: it acts along the beam, or in a direction in which the beam is rigid"
             raise InvalidValue("input", excitation.label, bound, "model both planes, or turn the beam")
         return HarmonicDrive(self.shapes.T @ load, self._residual(load), accelerations, force)
 
@@ -289,11 +289,11 @@ class ModelAtSpeed(FieldsOnly):
         return Row(position, sum((t * w for t, w in zip(turn, each, strict=False)), zero), each[direction])
 
     def _carried(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the acceleration in one direction by unit deflections (2,) and velocities (2,) in both.
+        """Compute the acceleration in one direction per unit of the deflections and velocities in both.
 
-        Rotation adds -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection, and 2 omega S of the velocity in the
-        other direction, with S the sine of the precone, and d and n the components of the two directions in
-        the plane of rotation and normal to it.
+        Both results have the shape (2,).  Rotation adds -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection,
+        and 2 omega S of the velocity in the other direction, with S the sine of the precone, and d and n the
+        components of the two directions in the plane of rotation and normal to it.
         """
         (d, n), (_, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
         pull = -(self.speed**2) * (d[direction] * np.array(d) + sine**2 * n[direction] * np.array(n))

@@ -118,7 +118,7 @@ class PowerSpectrum:
         one_of("interpolation", self.interpolation, get_args(BetweenPoints))
         f, S = ascending("psd.frequencies", self.frequencies), real_array("psd.values", self.values)
         if len(f) != len(S) or len(f) < 2:
-            bound = f"{len(S)} and {len(f)} frequencies: give as many values as frequencies, at least two"
+            bound = f"give as many values (here {len(S)}) as frequencies ({len(f)}), at least two"
             raise InvalidValue("psd.values", self.values, bound)
         refuse(f < 0, "psd.frequencies", f, "Hz", "give 0 or more: the density is one-sided")
         refuse(

@@ -162,8 +162,8 @@ def count_cycles(
 ) -> LoadCycles:
     """Count the cycles of a quantity at one station from `start` to `end` [s], by rainflow counting.
 
-    Turning points are found at 32 times in each time step and then refined by the interpolation of the
-    transient, to 1e-6 of the largest range.
+    Turning points are sought at 32 times in each time step.  They are then refined by the interpolation of
+    the transient, so that the error of their values is 1e-6 of the largest range.
 
     Parameters
     ----------

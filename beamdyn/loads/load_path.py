@@ -83,7 +83,7 @@ class LoadPath(FieldsOnly):
     # Turning points and largest magnitudes --------------------------------------------------------
 
     def turning_values(self, station: int, output: int, start: float, end: float) -> np.ndarray:
-        """Find one output's values at its local extremes from start to end [s], and at both times."""
+        """Find the values of one output at its local extremes from start to end [s], and at start and end."""
         single = self.rows.chosen(np.array([station]), np.array([output]))
         samples, parts = self.run.path.samples[0], np.linspace(0, 1, _BETWEEN_SAMPLES, endpoint=False)
         between = (samples[:-1, None] + np.diff(samples)[:, None] * parts).ravel()

@@ -7,11 +7,11 @@ work on it is
 
 with the loads f of the root's motion and gravity, and the forms m, g, k of mass, gyroscopic terms and
 geometric stiffness: the loads and the inertia of the part outboard, and the lever arms that the deflection
-gives to the centrifugal forces.  No curvature enters.  The accelerations follow from the equations of
-motion of the kept coordinates, so that R is the moment of the kept shapes and the static one of all others,
+gives to the centrifugal forces.  No curvature enters.  The accelerations follow from the equations of motion
+of the kept coordinates, so that R contains the moment of the kept shapes and the static moment of all others,
 as in the mode-acceleration method: Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section
-11.4.
-Modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) is a load on the beam in proportion to its mass.
+11.4.  Modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) is a load on the beam in proportion to its
+mass.
 """
 
 from __future__ import annotations

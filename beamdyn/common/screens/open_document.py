@@ -225,12 +225,16 @@ class OpenDocument:
         return toml_of({name: value for name, value in tables.items() if name not in self.document.beside})
 
     def file(self) -> str:
-        """Return the design as a TOML file; comments hold the options of the screens, for `open`."""
+        """Return the design as the text of a TOML file.
+
+        Options of the screens, which are not part of the design, are in comments, from which `open` restores
+        them.
+        """
         options = "".join(f"# {path} = {self.entries[path]}\n" for path in self.document.aside)
         return "\n".join(filter(None, (options, self.text())))
 
     def put(self, path: str, text: str) -> None:
-        """Change the text of one field; drop the texts of inputs that no longer exist."""
+        """Change the text of one field; drop the texts of inputs that this change removes from the form."""
         self._replace_entries(self.entries | {path: text})
 
     def _replace_entries(self, entries: Entries) -> None:

@@ -65,7 +65,10 @@ def solve_for_drawing(
 def sweep(
     document: Document, screen: Screen, entries: form_entries.Entries, text: str, results: str
 ) -> Swept:
-    """Vary one of the inputs; return the results, or the reason why there are none."""
+    """Compute results over a varied input; return the sweep, or the reason why there is none.
+
+    `text` names the input and its values, `results` are the names of the results, separated by commas.
+    """
     work = _opened(document, entries)
     assert screen.sweeps is not None
     try:
@@ -87,7 +90,7 @@ def find(document: Document, screen: Screen, entries: form_entries.Entries, soug
 
 
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
-    """Return a foldable part of a result as HTML."""
+    """Return the foldable part `number` (an index of `Screen.more`) of a result as HTML."""
     return screen.more[number].on_page(answer)
 
 

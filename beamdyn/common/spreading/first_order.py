@@ -45,7 +45,10 @@ class Slopes:
     exact: np.ndarray
 
     def replaced(self, rows: Mapping[int, tuple[np.ndarray, np.ndarray]]) -> Slopes:
-        """Return a copy in which some rows are replaced by exact derivatives, if these are finite."""
+        """Return a copy with exact derivatives, where these are finite.
+
+        `rows` has, by index of the input, the exact derivatives of all results and their errors.
+        """
         value, error, exact = self.value.copy(), self.error.copy(), self.exact.copy()
         for row, (slope, wrong) in rows.items():
             known = np.isfinite(slope)

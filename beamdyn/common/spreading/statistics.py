@@ -172,7 +172,7 @@ _ROUNDING = 1e-12  # relative scatter of results below which they count as equal
 
 @dataclass(frozen=True)
 class Scatter:
-    """Scatter of k results over the random designs that have them.
+    """Statistics of each of k results over those random designs that have this result.
 
     Parameters
     ----------

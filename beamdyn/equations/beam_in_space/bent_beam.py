@@ -101,7 +101,7 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def flat_functions(self) -> np.ndarray:
-        """Strains per unit of each coordinate, flattened over components and Gauss points: one row each."""
+        """Strains per unit of each coordinate (row), flattened over components and Gauss points."""
         return self.functions.reshape(self.size, -1)
 
     def strained(self, q: np.ndarray) -> np.ndarray:
@@ -133,7 +133,7 @@ class BeamInSpace(FieldsOnly):
         return bool(self.fibres.any() and self.functions[:, 3].any())
 
     def reduced(self, basis: np.ndarray) -> BeamInSpace:
-        """Transform the beam to other coordinates, q = basis @ q_reduced; the basis has a column for each."""
+        """Transform the beam to other coordinates, q = basis @ q_reduced (a column for each new one)."""
         given = {name: getattr(self, name) for name in ("functions", "hinges", "slopes")}
         rows = {k: np.tensordot(basis.T, values, 1) for k, values in given.items() if values is not None}
         K, C = (basis.T @ matrix @ basis for matrix in (self.stiffness, self.damping))

@@ -55,7 +55,7 @@ def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
 
 
 def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) -> np.ndarray:
-    """Integrate a curvature to rotations from the root to the Gauss points of cells and to the tip.
+    """Integrate the curvature of a beam from the root: compute rotations at Gauss points and at the tip.
 
     The unit quaternion of R' = R skew(curvature) satisfies a linear equation, y' = y (0, curvature)/2, which
     Gauss collocation solves with an error that falls exponentially with the number of points on a cell.  The

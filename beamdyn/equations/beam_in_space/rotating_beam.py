@@ -278,7 +278,7 @@ class RotatingBeam(FieldsOnly):
         return basis
 
     def nearest(self, other: RotatingBeam, q: np.ndarray) -> np.ndarray:
-        """Find coordinates whose strains are nearest to those of another discretization's beam at q."""
+        """Find coordinates whose strains are nearest to those of the beam `other` at its coordinates q."""
         own, rule = self.beam, self.beam.stations.quadrature
         between = other.beam.stations.quadrature.interpolate_to(rule.xi)
         strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
@@ -300,7 +300,7 @@ class RotatingBeam(FieldsOnly):
         return q @ self.beam.functions[:, -1] @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Compute the angle between the tip and the root's axis e1 [rad]; signed for bending in one plane."""
+        """Compute the angle between the tip section's axis and e1 [rad]; signed for bending in one plane."""
         if self.beam.is_planar:
             return float(q @ self.beam.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
@@ -402,7 +402,7 @@ class BentState(FieldsOnly):
             yield Load(name, row, vector[i], quantity, -1.0)
 
     def _deflection(self, place: slice, direction: int) -> Deflection:
-        """Build the deflection in a direction that one coordinate block causes, with its inertial loads."""
+        """Build the deflection in one direction due to one block of coordinates, with its inertial loads."""
         axis = np.array([-_AXES[2], _AXES[1]][direction])
         by_root = self.under({_ROOT[1 + direction]: 1.0}).work[place]
         by_turning = -self.bent.work(self.bent.masses.carried(axis, acceleration=1.0).force)[place]

@@ -152,7 +152,10 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Differentiate the mass centre's displacement by the two motions, both rotations: (3, 4) as `beside`."""
+    """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4).
+
+    Rows and columns are as in `SectionMotion.beside`.
+    """
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
@@ -182,12 +185,15 @@ def _moment(beam: Beam, component: int, power: int) -> Profile | None:
 
 @lru_cache(maxsize=64)
 def _pulled(beam: Beam) -> list[list[Profile | None]]:
-    """Compute both tensions of `axial_tension` times each offset of the tension centre [kg m, kg m2]."""
+    """Compute N_A and N_B of `axial_tension` times each offset of the tension centre [kg m, kg m2]."""
     return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
 class _CoupledMatrix(NamedTuple):
-    """Matrix in the equations of `rows`; those of `columns` contain its transpose times `mirrored`."""
+    """Matrix that couples two fields.
+
+    The equations of the field `rows` contain the matrix, those of `columns` its transpose times `mirrored`.
+    """
 
     rows: str
     columns: str
@@ -258,7 +264,10 @@ class Offsets:
 
     @cached_property
     def accelerations(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """Accelerations of the axis by each quantity of root motion: a vector times x to the power 0 or 1."""
+        """Accelerations of the axis per unit of each quantity of root motion: quantity, vector and power.
+
+        The acceleration at x is the vector times x to this power, 0 or 1.
+        """
         (B, P), (along, first, second) = self.frame, np.eye(3)
         return [
             ("root_axial", along, 0),
@@ -321,7 +330,10 @@ class Offsets:
                 yield value, moment
 
     def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
-        """Integrate mass times x^power times a linear function of offsets beyond each section; None if 0."""
+        """Integrate mass times x^power times a linear function of offsets beyond each section; None if 0.
+
+        The four coefficients of this function multiply the offsets c1, c2, t1, t2.
+        """
         of_tip, length = self._of_tip(coefficients, power), self.scene.beam.length
         parts = [moment.scaled(value * length) for value, moment in self._of_sections(coefficients, power)]
         outboard = [part.outboard_integral() for part in parts] + [ONE.scaled(of_tip)] * bool(of_tip)

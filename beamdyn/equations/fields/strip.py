@@ -202,9 +202,10 @@ class Strip:
         columns: tuple[WidthFunctions, str],
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
-        """Integrate over x a weight times the mean over the width of two derivatives times `across`.
+        """Integrate over x a weight times the mean of a product over the width: a matrix.
 
-        Each derivative is named by the functions and a label such as "w_xx".
+        The product is that of two derivatives and `across`.  Each derivative is named by the functions and a
+        label such as "w_xx".
         """
         (first, a), (second, b) = rows, columns
         _, of_points = gauss_rule(self.points)

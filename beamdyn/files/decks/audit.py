@@ -118,7 +118,10 @@ def _one_plane(scene: Scene, plane: str) -> Scene:
 
 
 def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
-    """Return the tip body without offset across, its `inertia` about the axis of bending in a plane."""
+    """Return the tip body for bending in one plane.
+
+    It has no offset across, and its `inertia` is that about the axis of this bending.
+    """
     tip = tip and replace(tip, offset_across=0.0)
     if tip is None or plane == "flap":
         return tip

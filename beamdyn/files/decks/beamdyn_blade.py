@@ -157,7 +157,10 @@ def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
 
 
 def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
-    """Choose stations x/L between which angles [deg] are nearly linear; kinks between members occur twice."""
+    """Choose stations x/L between which angles [deg] are nearly linear.
+
+    At a kink between two members there are two stations at one position.
+    """
     jumps = [np.abs(a[1:] - a[:-1]) > _ANGLE for a in angles]
     kinks = x[1:][(x[1:] == x[:-1]) & np.any(jumps, axis=0)]
     kept = np.sort(np.concatenate([np.union1d(stations, kinks), kinks]))
