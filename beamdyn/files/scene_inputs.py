@@ -144,7 +144,9 @@ def _in_a_list(key: str) -> BeforeValidator:
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
-            raise InvalidInput("", dict(given), f"give one table [[beam.{key}]] for each, in double brackets")
+            raise InvalidInput(
+                "", dict(given), f"give a table [[beam.{key}]] in double brackets for each one"
+            )
         return given
 
     return BeforeValidator(refuse_one)

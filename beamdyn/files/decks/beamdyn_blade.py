@@ -253,7 +253,7 @@ def _check_matrices(
     ]
     if name == "mass":
         wanted = (
-            "that of a rigid section: m on the diagonal, m times the mass centre beside it, Izz = Ixx + Iyy"
+            "mass m on the diagonal, m times its centre beside it, and inertia about z equal to Ixx + Iyy"
         )
         is_bad = (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS)
         checks += [(is_bad, wanted)]
