@@ -180,7 +180,7 @@ class Equations:
         """
         eta = real_array("eta", eta)
         if eta.size and np.abs(eta).max() > 1:
-            raise ValueError("eta: positions across run from -1 to 1, at the edges of the strip")
+            raise ValueError("eta: positions across the width must be from -1 to 1, the edges of the strip")
         values = np.repeat(self.deflection(xi)[:, :, None], len(eta), axis=2)
         for name, functions in self.sections:
             of_field = self.shapes[name]

@@ -35,7 +35,7 @@ _SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *[\w/]+)\s*(?=[,;\t]|$)"
 _OTHER_SHAPE = re.compile(r"\b(?:mode )?shape\b[^,;\t]*", re.IGNORECASE)
 _RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
 _MOST = 40  # largest number of mode shapes in a file
-_REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
+_REMEDY = 'rename your columns, as in --columns "{name} = {head}"'
 
 Half = Callable[[str], float]  # a function that returns half a unit of the last digit of a number as written
 

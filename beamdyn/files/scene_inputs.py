@@ -144,9 +144,7 @@ def _in_a_list(key: str) -> BeforeValidator:
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
-            raise InvalidInput(
-                "", dict(given), f"give a table [[beam.{key}]] in double brackets for each one"
-            )
+            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets for each one")
         return given
 
     return BeforeValidator(refuse_one)
@@ -249,7 +247,7 @@ class StiffnessInput(_BeamInput):
     ] = None
     second_shear_stiffness: Annotated[
         Along | None,
-        Varying("N", "kappa G A2", "shear stiffness across; the first one if not given", above=0),
+        Varying("N", "kappa G A2", "shear stiffness in the direction across; by default the first", above=0),
     ] = None
     rotary_inertia: Annotated[
         Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
@@ -265,14 +263,14 @@ class StiffnessInput(_BeamInput):
     ] = None
     mass_offset: Annotated[
         Along | None,
-        Varying("m", "c", "offset of the mass centre from the shear centre, across, for torsion"),
+        Varying("m", "c", "offset of mass centre from shear centre, in the direction across, for torsion"),
     ] = None
     tension_offset: Annotated[
         Along | None,
         Varying(
             "m",
             "t",
-            "offset of the tension centre from the shear centre, across; bending stiffnesses are about it",
+            "offset of tension centre from shear centre, across; bending stiffness is about the former",
         ),
     ] = None
 

@@ -30,7 +30,7 @@ from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
 from beamdyn.scene.validity import check_speeds
 
 _MODES = 5  # number of modes for which physics and trial functions are chosen, if all functions are kept
-_STRAIGHT = "linear models are those about the straight beam"
+_STRAIGHT = "linear models are of small motions about the straight beam"
 _OR_ALL = Named("or None, which keeps all functions", "or auto")
 
 

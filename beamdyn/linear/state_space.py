@@ -171,7 +171,7 @@ def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
     M = model.M[:m, :m]
     values = np.linalg.eigvalsh(M)
     if values[0] < _MASSLESS * values[-1]:
-        bound = "some coordinates have no mass, so that their rates are no states"
+        bound = "some coordinates have no mass, so that their rates cannot be states"
         raise InvalidValue("modes", model.modes, bound, "give a number of modes")
     of_state = np.linalg.solve(M, -np.hstack([model.K[:m], model.C[:m, :m]]))
     of_load = np.linalg.solve(M, loads[:m])

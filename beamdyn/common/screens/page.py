@@ -421,7 +421,7 @@ class Page:
             design = LinkedDesign.of_fragment(fragment)
             work = self.works.get(design.document)
             if work is None:
-                raise ConfigError("the link", [f"{self.program.name} has no {design.document[:40]}"])
+                raise ConfigError("the link", [f"{self.program.name} cannot open {design.document[:40]}"])
             work.open(design.text, "the link")
         except ConfigError as error:
             return self._file.refuse(str(error))

@@ -278,6 +278,6 @@ def without_unit(text: str, written: str, unit: str) -> str:
     """
     factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
     if factor is None:
-        return f"give numbers alone{f', in {unit}' if unit else ''}"
+        return f"give numbers without a unit{f', in {unit}' if unit else ''}"
     pattern = rf"((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s*{re.escape(written)}(?!\w)|(?![\d.]|\s*%))"
     return f'give "{re.sub(pattern, lambda found: f"{float(found[1]) * factor:g}", text)}"'

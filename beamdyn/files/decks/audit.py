@@ -334,8 +334,8 @@ def _warnings(shapes: tuple[ShapeCheck, ...]) -> list[str]:
         if abs(shape.coefficient_sum - 1) > _SUM_ERROR
     ]
     return wrong_sums + [
-        f"the deck's shape of {shape.mode} is {shape.difference:.2g} of the tip deflection off that computed "
-        f"from its stations, at x/L = {shape.place:.3g}"
+        f"the deck's shape of {shape.mode} differs from the shape computed from its stations by "
+        f"{shape.difference:.2g} of the tip deflection, at x/L = {shape.place:.3g}"
         for shape in shapes
         if shape.difference > _SHAPE_ERROR
     ]

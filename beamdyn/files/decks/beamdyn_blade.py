@@ -105,7 +105,7 @@ def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> 
         members.append(slice(start, start + number))
         start += number - 1
     if start + 1 != points:
-        said = f"the members have {start + 1} key points, kp_total in line {line} says {points}"
+        said = f"the members have {start + 1} key points, but kp_total in line {line} is {points}"
         raise text.refusal(line + count, f"{said}; neighbouring members share one")
     return members
 

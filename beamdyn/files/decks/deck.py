@@ -108,11 +108,11 @@ class Deck(Result):
         head = [f"{self.title or 'A blade'}", f"Read from {names} ({self.kind})."]
         if self.ignored:
             head += ["", "Not in this scene:", *(f"  {entry.sentence()}" for entry in self.ignored)]
-        comments = {"": head, "beam": ["linear between stations; bending_stiffness is that of flap"]}
+        comments = {"": head, "beam": ["linear between stations; bending_stiffness is flapwise"]}
         if "second_bending_stiffness" in self.blade.columns:
-            comments["beam"][0] += ", the second that of edge"
+            comments["beam"][0] += ", second_bending_stiffness edgewise"
             comments["beam"] += ["twist is added to the bending angle: minus the twist towards feather"]
-        comments["mount"] = ["outward; flap bends out of the plane of rotation where twist and pitch are 0"]
+        comments["mount"] = ["outward; flap is out of the plane of rotation where twist and pitch are 0"]
         if self.blade.pitch:
             comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
         if self.blade.matrices is not None:
