@@ -105,7 +105,7 @@ class ArcQuadrature:
         return matrix
 
     def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Find the cell of each xi, its local coordinate from -1 to 1, and indices of the cell's points."""
+        """Find, for each xi, its cell, its coordinate in the cell (-1 to 1), and the cell's Gauss points."""
         ends, p = self.cells.ends, self.cells.points
         cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
         t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)

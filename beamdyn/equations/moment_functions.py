@@ -121,13 +121,16 @@ class MomentSpaces(FieldsOnly, SampledSpaces):
 
     @cached_property
     def cells(self) -> np.ndarray:
-        """Ends of cells on which every compliance and the highest polynomial are resolved, as x/L."""
+        """Ends x/L of cells, each so short that an interpolating polynomial represents all functions on it.
+
+        These functions are the entries of the sections' compliances, and the polynomial of highest degree.
+        """
         phases, ends = self.polynomials.phases, np.array(self.beam.breakpoints)
         halved = _halve(ends, lambda left, right: phases(left, right, self.forces) > _PHASE)
         return _halve(halved, self._are_unresolved)
 
     def _are_unresolved(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """Mark the cells, with given ends, that are too long to resolve some entry of a compliance."""
+        """Mark the cells on which some entry of a compliance is not represented by its interpolant."""
         at_nodes, unresolved = Sampler(left, right, NODES), np.zeros(len(left), dtype=bool)
         for tensor in self._stiffnesses.values():
             values = {entry: at_nodes(profile).reshape(-1, NODES) for entry, profile in tensor.items()}
@@ -413,7 +416,7 @@ def _orthonormalize_nested(
     """Orthonormalize columns; the first vectors, whose number is returned, span the marked columns."""
     root = np.sqrt(weight)[:, None]
     first, rest = _span(_unit(columns[:, of_coarse] * root)), _unit(columns[:, ~of_coarse] * root)
-    for _ in range(2):  # twice, as the first projection leaves rounding errors of the removed components
+    for _ in range(2):  # repeated, as the first subtraction leaves a rounding error
         rest = rest - first @ (first.T @ rest)
     return first.shape[1], np.concatenate([first, _span(rest)], axis=1) / root
 

@@ -256,7 +256,7 @@ def _integrated_legendre(
 
 
 def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
-    """Integrate n Legendre polynomials on [a, b] repeatedly from the root; return values (n, k) at k xi."""
+    """Integrate n Legendre polynomials on [a, b] repeatedly from the root; evaluate them at xi: (n, k)."""
     half = (b - a) / 2
     scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))[:, None]
     inside, beyond = (xi >= a) & (xi <= b), xi > b

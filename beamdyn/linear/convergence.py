@@ -77,9 +77,9 @@ def model_at_speed(
     discretization: DiscretizationChoice,
     tolerance: float | None = None,
 ) -> ModelAtSpeed:
-    """Build the linear model of a scene with a number of modes; trial functions are chosen without damping.
+    """Build the linear model of a scene with a number of modes.
 
-    For the tolerance see `natural_modes`.
+    Trial functions are chosen by the modes of the undamped beam.  For the tolerance see `natural_modes`.
 
     Raises
     ------

@@ -49,7 +49,7 @@ _LAYERS = Words(Named("Harvester.on puts them on", "a table [harvester] puts the
 
 @dataclass(frozen=True)
 class HarmonicDrive:
-    """Load of an excitation at one harmonic of the rotation, and its direct effects, per unit of the input.
+    """Load of an excitation at one harmonic of the rotation, and its further effects, per unit of the input.
 
     Parameters
     ----------
@@ -324,10 +324,10 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
-# The error of a pole is estimated from three models: a fine, a coarse and a coarser one. _STEADY: relative
-# distance between the poles of the coarse and the coarser model above which it is not used. _LEAST_RATIO:
-# smallest assumed ratio of the distance between fine and coarse to that between coarse and coarser, as
-# several fields, segments or elements do not converge as steadily as one.
+# The error of a pole is estimated from three models: a fine, a coarse and a coarser one. The distance between
+# the poles of the coarse and the coarser model is used only if it is below _STEADY, relative to the pole. The
+# distance between the fine and the coarse model is assumed to be at least _LEAST_RATIO times that distance,
+# as several fields, segments or elements do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 

@@ -111,7 +111,8 @@ def find_peaks(
         Target of the error, relative to the magnitude and to the width of a peak; rounding if not given.
     """
     share = max(_SHARE * tolerance, _ROUNDING)
-    top = 2 * band[1] + abs(model.speed) / _TURN  # flanks of peaks reach beyond the band
+    # Highest frequency at which the response is sampled, as flanks of peaks reach beyond the band.
+    top = 2 * band[1] + abs(model.speed) / _TURN
     found = sorted(
         peak for peak in _peaks(model, drive, seen, top, share) if band[0] < peak.frequency < band[1]
     )
@@ -133,7 +134,7 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -
     `compared` contains a margin and the peaks of each model, `share` the relative accuracy of all peaks.
     """
     own = np.array(peak[:3])
-    with np.errstate(invalid="ignore"):  # a magnitude may be inf
+    with np.errstate(invalid="ignore"):  # the difference of infinite magnitudes is nan
         # The frequency's rounding error is relative to the bandwidth, or to the frequency if that is unknown.
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)
         sizes = np.array([width, peak.size, peak.bandwidth])

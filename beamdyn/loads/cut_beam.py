@@ -49,7 +49,7 @@ class CutQuadrature:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Quadrature weights, then 1 for each station, for the delta functions of virtual displacements."""
+        """Quadrature weights of the points, then the weight 1 for the delta function at each station."""
         _, w = gauss_rule(self.cells.points)
         inside = (np.diff(self._ends)[:, None] / 2 * w).ravel()
         return np.concatenate([inside, np.ones(len(self.stations.xi))])
@@ -62,7 +62,9 @@ class CutQuadrature:
 
 @dataclass(frozen=True)
 class CutSpace(SampledSpace):
-    """Trial functions, followed by rotations (if functions have slopes) and translations at each cut.
+    """Trial functions, followed by the virtual displacements of the part outboard of each cut.
+
+    The virtual displacements are rotations, if functions have slopes, and then translations.
 
     Parameters
     ----------

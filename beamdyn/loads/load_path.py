@@ -51,7 +51,7 @@ class LoadPath(FieldsOnly):
 
     @property
     def outputs(self) -> StationOutputs:
-        """Outputs at each station as functions of the loads."""
+        """Outputs at each station, such as strains, as functions of the forces and moments there."""
         assert self.given is not None
         return self.given
 
@@ -131,9 +131,9 @@ class LoadPath(FieldsOnly):
         last: np.ndarray,
         refinements: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Find where `size` of single outputs is largest near times t [s], between `first` and `last`.
+        """Find the times near t [s] at which the function `size` of each of the single outputs is largest.
 
-        Return the values of the outputs there, and the times [s].
+        The times are sought between `first` and `last`.  Return the values of the outputs, and the times [s].
         """
         found, half_width = np.empty(0), np.maximum(last - t, t - first)
         for _ in range(refinements):

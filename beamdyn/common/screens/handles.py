@@ -154,7 +154,7 @@ def draw_sheet(
 
 
 def _with_first(rows: Rows, **changes: Any) -> Rows:
-    """Return the rows with changed fields of their first drawing."""
+    """Return rows of drawings in which the first drawing has the given `changes` of its fields."""
     (first, *others), *more = rows
     return [[replace(first, **changes), *others], *more]
 

@@ -258,7 +258,7 @@ class Offsets:
 
     @cached_property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Matrices along b1, e1, e2: B of Coriolis and Euler acceleration, P of centrifugal acceleration."""
+        """Matrices B of Coriolis and Euler accelerations and P of centrifugal ones, in axes b1, e1, e2."""
         a = np.array([exact_cos_sin(self.scene.mount.precone)[1], *axis_in_section(self.scene)])
         return -np.cross(a, np.eye(3)).T, np.eye(3) - np.outer(a, a)
 

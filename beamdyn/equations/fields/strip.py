@@ -264,18 +264,18 @@ def _root(factor: Profile) -> Profile:
 
 @dataclass(frozen=True)
 class StackedSpace:
-    """Coordinates of a plate field: each function across the width, times all functions along the beam.
+    """Coordinates of a plate field: one for each product of a function across and a function along the strip.
 
     Parameters
     ----------
     along : Space
         Functions along the beam.
     numbers : tuple of int
-        Numbers k of the functions across.
+        Numbers k of the functions across the width.
     fewer : int
         Number of functions across in the coarser discretization.
     stretch : Profile
-        Ratio of the local width to the width by which y is scaled in the functions across.
+        Ratio of the local width to the width b in the argument 2 y/b of the functions across.
     """
 
     along: Space
