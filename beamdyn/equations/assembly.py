@@ -134,11 +134,14 @@ def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.n
     compliance = solve_lower(L, solve_lower(L, M).T)
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
     unshifted: np.ndarray | float = 1.0
-    if shift:  # v^T K v = 1 - shift mu, without the cancellation of soft springs; 0 if it is within rounding
+    # With a shift, the factor 1 - shift mu is computed as v^T K v, since the difference loses digits if a
+    # spring is soft; it is 0 if it is within rounding.
+    if shift:
         v = solve_lower_transposed(L, U)
         quotient = np.einsum("nk,nk->k", v, K @ v)
         lost = BACKWARD * np.einsum("nk,nk->k", np.abs(v), np.abs(K) @ np.abs(v))
         unshifted = np.where(quotient > lost, quotient, 0.0)
-    of_modes = 1.0 if ratios is None else ratios[::-1]  # mu = 1/(omega^2 + shift) ascends, omega descends
+    # Ratios are in the order of ascending omega, but mu = 1/(omega^2 + shift) ascends as omega descends.
+    of_modes = 1.0 if ratios is None else ratios[::-1]
     root = (U * (of_modes * np.sqrt(np.maximum(mu * unshifted, 0)))) @ U.T
     return 2 * L @ root @ L.T

@@ -48,8 +48,8 @@ class Circuit:
     resistance : float
         Load resistance R [ohm].
     bent : dict of str to ndarray
-        Residual flexibility g of each field: static deflection by a unit voltage of the modes that are not
-        among the coordinates.
+        Residual flexibility g of each field: the static deflection under a unit voltage in those modes that
+        are not among the coordinates.
     """
 
     coupling: np.ndarray
@@ -67,7 +67,10 @@ class Voltage:
 
 
 def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
-    """Compute the strain of the layer's outer face at k positions x/L, for n bending functions: (n, k)."""
+    """Compute the strain of the piezoelectric layer's outer face per unit of each of n bending functions.
+
+    The result (n, k) is for k positions xi = x/L.
+    """
     assert beam.electrodes is not None, "electrodes stand on a layer"
     return beam.electrodes.fibre / beam.length**2 * deflection.space.evaluate(xi, 2)
 
@@ -98,7 +101,10 @@ def coupling_of(
 
 
 def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of a circuit with its flux as coordinate, and the voltage, from blocks' couplings."""
+    """Build the terms of a circuit with its flux as coordinate, and the voltage in these coordinates.
+
+    `coupled` has the coupling vector theta of each block of coordinates [N/V].
+    """
     root = np.sqrt(circuit.capacitance)
     terms = [
         Term("capacitance", BLOCK, BLOCK, 2, np.eye(1)),
@@ -112,7 +118,10 @@ def flux_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[lis
 
 
 def charge_terms(circuit: Circuit, coupled: Mapping[str, np.ndarray]) -> tuple[list[Term], Voltage]:
-    """Build the terms of a circuit with its charge as coordinate, and the voltage, from blocks' couplings."""
+    """Build the terms of a circuit with its charge as coordinate, and the voltage in these coordinates.
+
+    `coupled` has the coupling vector theta of each block of coordinates [N/V].
+    """
     C = circuit.capacitance
     terms = [
         Term("capacitance", BLOCK, BLOCK, 0, np.eye(1) / C),

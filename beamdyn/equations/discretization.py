@@ -63,14 +63,15 @@ class ArcQuadrature:
         return np.diff(self.cells.ends)[:, None] / 2
 
     def integrate(self, values: np.ndarray) -> np.ndarray:
-        """Integrate values at the Gauss points (last axis) from the root to each of them and to the tip."""
+        """Integrate values at Gauss points (last axis) from the root to each Gauss point and to the tip."""
         p, N = self.cells.points, len(self.xi)
         of_cells = values.reshape(-1, p)
         shape = *values.shape[:-1], (len(self.cells.ends) - 1), p
         ends = np.cumsum(
             (of_cells @ gauss_rule(p)[1]).reshape(shape[:-1]) * self._half_lengths[:, 0], axis=-1
         )
-        integrals = np.empty((*values.shape[:-1], N + 1))  # allocation takes longer than the arithmetic
+        # All integrals are computed in this one array, as allocation takes longer than the arithmetic.
+        integrals = np.empty((*values.shape[:-1], N + 1))
         inside = integrals[..., :N].reshape(shape)
         np.multiply((of_cells @ integrals_between_points(p).T).reshape(shape), self._half_lengths, out=inside)
         inside[..., 1:, :] += ends[..., :-1, None]
@@ -88,7 +89,7 @@ class ArcQuadrature:
         return scaled.reshape(*forces.shape[:-1], (len(self.cells.ends) - 1) * p)
 
     def integrate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, points) of values at Gauss points for integrals from the root to k xi."""
+        """Compute weights (k, N) of values at Gauss points for integrals from the root to k positions xi."""
         cell, t, own = self._find(xi)
         length, p = np.diff(self.cells.ends)[cell], self.cells.points
         matrix = np.where(np.arange(len(self.xi)) < (cell * p)[:, None], self.weights, 0.0)
@@ -96,7 +97,7 @@ class ArcQuadrature:
         return matrix
 
     def interpolate_to(self, xi: np.ndarray) -> np.ndarray:
-        """Compute weights (k, points) of values at Gauss points, which interpolate to k positions xi."""
+        """Compute weights (k, N) of values at Gauss points for interpolation to k positions xi."""
         _, t, own = self._find(xi)
         matrix = np.zeros((len(xi), len(self.xi)))
         values = legendre.legvander(t, self.cells.points - 1) @ legendre_series(self.cells.points)
@@ -104,7 +105,7 @@ class ArcQuadrature:
         return matrix
 
     def _find(self, xi: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Find the cell of each xi, its local coordinate from -1 to 1, and indices of the cell's points."""
+        """Find, for each xi, its cell, its coordinate in the cell (-1 to 1), and the cell's Gauss points."""
         ends, p = self.cells.ends, self.cells.points
         cell = np.clip(np.searchsorted(ends, xi, side="right") - 1, 0, len(ends) - 2)
         t = np.clip(2 * (xi - ends[cell]) / np.diff(ends)[cell] - 1, -1, 1)
@@ -158,10 +159,10 @@ class Sampler:
         return self._known[profile]
 
     def _place(self, breakpoints: tuple[float, ...], degree: int) -> tuple[np.ndarray, np.ndarray]:
-        """Find the segment that contains each cell, and Legendre polynomials (cells, points, degrees).
+        """Find the segment that contains each cell, and evaluate Legendre polynomials on the segments.
 
-        The polynomials have at least the given degree; they are cached, as most properties share their
-        segments.
+        The values (cells, points, degrees) are at the Gauss points, for all degrees up to at least the given
+        one; they are cached, as most properties have the same segments.
         """
         placed = self._placed.get(breakpoints)
         if placed is not None and placed[1].shape[2] > degree:
@@ -253,7 +254,10 @@ class SampledSpaces(ABC):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+
+        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        """
         left, right = self.functions(rows), self.functions(columns)
         return (left.samples[orders[0]] * left.weights(weight)) @ right.samples[orders[1]].T
 
@@ -305,7 +309,10 @@ class Spaces(Protocol):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over xi the weight times derivatives of the functions i of `rows` and j of `columns`."""
+        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+
+        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        """
         ...
 
     @property
@@ -319,7 +326,7 @@ class Spaces(Protocol):
         ...
 
     def shares_functions(self, other: Self) -> bool:
-        """Whether two function spaces of a class have the same functions, whatever their Gauss rule."""
+        """Whether another object of this class has the same functions, even if its Gauss rule differs."""
         ...
 
 

@@ -163,23 +163,24 @@ class Equations:
     # Deflection of the beam as a function of the coordinates ---------------------------------------
 
     def deflection(self, xi: np.ndarray, order: int = 0, direction: int = 0) -> np.ndarray:
-        """Evaluate the `order`-th x/L derivative of the deflection by unit coordinates at k xi: (n, k).
+        """Evaluate the deflection per unit of each coordinate, or its `order`-th derivative: shape (n, k).
 
-        Direction 0 is that of the bending angle, direction 1 is perpendicular to it.
+        Derivatives are with respect to xi = x/L, at k positions xi.  Direction 0 is that of the bending
+        angle, direction 1 is perpendicular to it.
         """
         check_direction(direction)
         xi = np.asarray(xi, dtype=float)
         return self._over_coordinates(lambda d: d.space.evaluate(xi, order), direction, xi.shape)
 
     def surface(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:
-        """Evaluate a strip's deflection in the direction of bending by unit coordinates: (coordinates, k, l).
+        """Evaluate a strip's deflection in the direction of bending per unit of each coordinate: (n, k, l).
 
         The points are xi = x/L (k,) along and eta = 2 y/b (l,) across the width b.
         A ValueError is raised if an eta lies outside the strip.
         """
         eta = real_array("eta", eta)
         if eta.size and np.abs(eta).max() > 1:
-            raise ValueError("eta: positions across run from -1 to 1, at the edges of the strip")
+            raise ValueError("eta: positions across the width must be from -1 to 1, the edges of the strip")
         values = np.repeat(self.deflection(xi)[:, :, None], len(eta), axis=2)
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -189,7 +190,11 @@ class Equations:
         return values
 
     def curvature_across(self, xi: np.ndarray) -> np.ndarray:
-        """Evaluate the deflections' second derivative in eta = 2 y/b, averaged over the width b, at xi."""
+        """Evaluate second derivatives across the width, per unit of each coordinate: shape (n, k).
+
+        The derivatives of the deflection are with respect to eta = 2 y/b, and averaged over the width b, at k
+        positions xi = x/L.
+        """
         values = np.zeros((self.size, len(xi)))
         for name, functions in self.sections:
             of_field = self.shapes[name]
@@ -206,9 +211,9 @@ class Equations:
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates.
+        """Deflection of the tip's corner 2 y/width = 1 per unit of each coordinate, shape (n,).
 
-        If the width is unknown, it is the deflection of the axis plus the twist [rad].
+        If the width is unknown, it is the deflection of the axis [m] plus the twist [rad].
         """
         values = self.tip.copy()
         for name, functions in self.sections:
@@ -218,22 +223,23 @@ class Equations:
 
     @cached_property
     def tip(self) -> np.ndarray:
-        """Tip deflection per unit of each coordinate in the direction of bending."""
+        """Tip deflection in the direction of bending per unit of each coordinate, shape (n,)."""
         return self.tips[0]
 
     @cached_property
     def tips(self) -> np.ndarray:
-        """Tip deflection by unit coordinates, one row for each direction in which the beam bends."""
+        """Tip deflection per unit of each coordinate: (planes, n), a row for each direction of bending."""
         return np.array([self._over_coordinates(lambda d: d.space.end(0), k) for k in range(self.planes)])
 
     def P(self, direction: int) -> np.ndarray:
-        """Compute the load under a unit root acceleration in a direction of bending [kg]."""
+        """Compute the load on each coordinate under a unit acceleration of the root in a direction [kg]."""
         return self._over_coordinates(lambda d: d.P, direction)
 
     def Q(self, direction: int) -> np.ndarray:
-        """Compute the load under a unit angular acceleration in a direction's plane [kg m].
+        """Compute the load on each coordinate under a unit angular acceleration of the root [kg m].
 
-        Sections and tip bodies with a product of inertia are also tilted towards the other direction.
+        The root turns in the plane of the beam's axis and the given direction of bending.  If the sections or
+        the tip body have a product of inertia, the load acts in the other direction, too.
         """
         of_direction = self._over_coordinates(lambda d: d.Q, direction)
         return of_direction + self._over_coordinates(lambda d: d.Q_across, 1 - direction)
@@ -241,7 +247,10 @@ class Equations:
     def _over_coordinates(
         self, quantity: Callable[[Deflection], np.ndarray], direction: int, shape: tuple[int, ...] = ()
     ) -> np.ndarray:
-        """Transform a quantity of the trial functions in one direction to the coordinates; 0 for others."""
+        """Transform a quantity of the trial functions that deflect in one direction to the coordinates.
+
+        Coordinates that do not deflect the beam in this direction get the value 0.
+        """
         values = np.zeros((self.size, *shape))
         for name, deflection in self.deflections.items():
             if deflection.direction == direction:
@@ -253,7 +262,10 @@ class Equations:
 
     @cached_property
     def matrices(self) -> tuple[dict[Quantity, np.ndarray], ...]:
-        """Matrix that each quantity multiplies, summed over terms, for q and its two time derivatives."""
+        """Matrices of q, of q' and of q'': in each of the three mappings, by quantity of the root's motion.
+
+        Each matrix is the sum of all terms that the quantity multiplies.
+        """
         sums: tuple[dict[Quantity, np.ndarray], ...] = ({}, {}, {})
         for term in self.terms:
             total = sums[term.order].setdefault(term.quantity, np.zeros((self.size, self.size)))
@@ -262,7 +274,7 @@ class Equations:
 
     @cached_property
     def vectors(self) -> dict[Quantity, np.ndarray]:
-        """Load vector that each quantity of the root's motion multiplies, summed over the loads."""
+        """Load vectors, by the quantity of the root's motion that multiplies each: sums over all loads."""
         sums: dict[Quantity, np.ndarray] = {}
         for load in self.loads:
             total = sums.setdefault(load.quantity, np.zeros(self.size))
@@ -274,15 +286,18 @@ class Equations:
         return root_motion(self.mount, sample, self.gravity)
 
     def matrix(self, order: int, root: RootMotion) -> np.ndarray:
-        """Compute the matrix of the `order`-th time derivative of q at each of the times."""
+        """Compute the matrix of the `order`-th time derivative of q at all times of the root's motion."""
         return _sum_over_quantities(self.matrices[order], root, (self.size, self.size))
 
     def load(self, root: RootMotion) -> np.ndarray:
-        """Compute the right-hand side of the equations at each of the times."""
+        """Compute the right-hand side of the equations at all times of the root's motion."""
         return _sum_over_quantities(self.vectors, root, (self.size,))
 
     def steady(self) -> SteadyPencil:
-        """Return the equations at constant speed, as polynomials in speed; fixed centre, no gravity."""
+        """Return the equations at constant speed, with coefficients that are polynomials in the speed.
+
+        The centre of the carrier is fixed, and there is no gravity.
+        """
         return self._steady
 
     @cached_property

@@ -16,7 +16,7 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor, tip_inertia
 
-_ROUNDING = 1e-15  # rounding error of accelerations (as by pi in angles), relative to the largest one
+_ROUNDING = 1e-15  # rounding error of accelerations (such as by rounded angles), relative to the largest one
 _SAMPLES = 501  # number of times sampled before the speed is steady, and again at steady speed
 _TURNS = 10  # number of revolutions that are sampled at steady speed
 _MOST_PLACES = 6  # largest number of point masses whose positions are listed
@@ -131,8 +131,8 @@ def say_tension(scene: SampledScene) -> str:
     """State what accelerates the root along the beam and so causes tension."""
     sources = scene.sources("root_axial")
     if sources == ["rotation"]:
-        return "the root's steady acceleration; no translation, so no parametric tension"
-    return f"the root accelerates along the beam by {_enumerate(sources)}"
+        return "the root has a steady acceleration; there is no translation, so no parametric tension"
+    return f"the root accelerates along the beam, due to {_enumerate(sources)}"
 
 
 def say_softening(scene: SampledScene) -> str:
@@ -145,7 +145,7 @@ def say_static_load(scene: SampledScene) -> str:
     """State what accelerates the root in the direction of bending and so loads the beam."""
     sources = [source for name in _transverse(scene) for source in scene.sources(name)]
     where = "across the beam" if scene.scene.physics.planes == 2 else "in the direction of bending"
-    return f"the root accelerates {where} by {_enumerate([*dict.fromkeys(sources)])}"
+    return f"the root accelerates {where}, due to {_enumerate([*dict.fromkeys(sources)])}"
 
 
 def _transverse(scene: SampledScene) -> tuple[str, ...]:

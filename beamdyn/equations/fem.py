@@ -22,7 +22,7 @@ from beamdyn.scene.sections import weight_degree
 
 _ACROSS = 8  # number of functions across the width of a plate
 MOST_ELEMENTS = 1000  # largest accepted number of elements
-# Largest number of elements that `finer` chooses: above it, Ritz functions are more efficient.
+# Largest number of elements that `finer` chooses: where more are needed, Ritz functions are more efficient.
 MOST_REFINED = 100
 # Shortest segment, as a fraction of the length: on shorter ones rounding leaves no correct digit.
 _SHORTEST = 1e-5 * (1 - 1e-9)
@@ -180,7 +180,10 @@ class FemSpaces(FieldsOnly):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+
+        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        """
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
 
     @property
@@ -190,7 +193,7 @@ class FemSpaces(FieldsOnly):
 
     @property
     def fewer_across(self) -> int:
-        """Number of functions across in the coarser model: the same, as meshes differ only along the beam."""
+        """Number of functions across the width in the coarser model: the same, as only meshes are coarser."""
         return _ACROSS
 
     def shares_functions(self, other: FemSpaces) -> bool:
@@ -294,7 +297,10 @@ def _turn(xi: np.ndarray, order: int) -> np.ndarray:
 
 
 def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
-    """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+    """Integrate over x/L a weight times derivatives of two functions, one of `rows` and one of `columns`.
+
+    The result is a matrix over all pairs of functions; `orders` are the orders of the two derivatives.
+    """
     values = rows.weights(weight)
     assembled = _PRODUCTS[orders].assemble(columns.basis, rows.basis, weight=values)
     matrix = assembled.toarray()[np.ix_(rows.free, columns.free)]
@@ -305,7 +311,7 @@ def _integrate(rows: FemSpace, columns: FemSpace, weight: Profile, orders: tuple
     return matrix
 
 
-# Weak forms: scikit-fem defines their arguments, and has no types for them.
+# Weak forms: scikit-fem calls them, and has no type annotations for their arguments.
 
 
 def _derivative(u: Any, order: int) -> Any:
@@ -314,7 +320,8 @@ def _derivative(u: Any, order: int) -> Any:
     return u.grad[0] if order == 1 else u.hess[0][0]
 
 
-# Products of derivatives, by the orders for rows and for columns; scikit-fem passes the columns first.
+# Weak forms of products of two derivatives, by the orders of derivatives for rows and columns; scikit-fem
+# passes the function of the columns first.
 _PRODUCTS = {
     (a, b): BilinearForm(lambda u, v, w, a=a, b=b: w.weight * _derivative(u, b) * _derivative(v, a))
     for a in range(3)

@@ -10,18 +10,18 @@ from beamdyn.equations.discretization import Cells, Discretization, RootConditio
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
-_FEWER = 2  # one of torsion, and one of camber
+_FEWER = 2  # number of functions across the width that are left out: one of torsion, one of camber
 _LEAST = 2  # smallest number of functions across the width
 
 
 @dataclass(frozen=True)
 class FewerAcross:
-    """Discretization with the functions of another along the beam, and two fewer across its width.
+    """Discretization with the same functions along the beam as another one, but two fewer across its width.
 
     Parameters
     ----------
     whole : Discretization
-        The other discretization.
+        The other discretization, with all functions across the width.
     """
 
     whole: Discretization
@@ -46,7 +46,7 @@ class FewerAcross:
         return SpacesOfFewer(self.whole.spaces(beam))
 
     def has_fewer_of_both(self, beam: Beam) -> bool:
-        """Return whether functions both of torsion and of camber are left out; small bases keep some."""
+        """Return whether two functions across the width are left out; in a small basis it is one or none."""
         return self.whole.spaces(beam).across >= _LEAST + _FEWER
 
     def cells(self, beam: Beam) -> Cells:
@@ -69,12 +69,12 @@ class FewerAcross:
 
 @dataclass(frozen=True)
 class SpacesOfFewer:
-    """Function spaces with two functions fewer across than others.
+    """Function spaces like others, but with two functions fewer across the width of a plate.
 
     Parameters
     ----------
     whole : Spaces
-        The other function spaces.
+        The other function spaces, with all functions across the width.
     """
 
     whole: Spaces
@@ -86,7 +86,10 @@ class SpacesOfFewer:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+
+        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        """
         return self.whole.product(weight, rows, columns, orders)
 
     @property

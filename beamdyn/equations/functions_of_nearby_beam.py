@@ -1,7 +1,8 @@
-"""The functions of one beam, integrated over a beam that differs little and has its breakpoints elsewhere.
+"""Trial functions made for one beam, used for a nearby beam: one that differs little, with other breakpoints.
 
-To first order, a mode changes by the change of the matrices in unchanged functions.  That of the functions
-themselves would only add their rounding errors to a small difference.
+They serve to compute the small difference between the modes of the two beams.  To first order, it follows
+from the difference of the matrices for the same functions.  Functions made anew for the nearby beam would
+only add their rounding errors to this difference.
 """
 
 from __future__ import annotations
@@ -20,21 +21,21 @@ from beamdyn.scene.profile import merge_breakpoints
 
 @dataclass(frozen=True)
 class NearbySpaces(FieldsOnly, SampledSpaces):
-    """Function spaces of one beam on another.
+    """Function spaces that were made for one beam, and are used for a nearby beam.
 
     Parameters
     ----------
     given : MomentSpaces
-        Function spaces of the one beam.
+        The function spaces, with the beam for which they were made.
     beam : Beam
-        The other beam, with the modelled properties.
+        The nearby beam, with the modelled properties.
     """
 
     given: MomentSpaces
     beam: Beam
 
     def functions(self, conditions: RootConditions) -> NearbySpace:
-        """Return the trial functions of the one beam that satisfy conditions at the root."""
+        """Return those trial functions of the original beam that satisfy conditions at the root."""
         return _build_space(self, conditions)
 
     @property
@@ -48,30 +49,30 @@ class NearbySpaces(FieldsOnly, SampledSpaces):
         return self.given.fewer_across
 
     def shares_functions(self, other: NearbySpaces) -> bool:
-        """Whether other spaces have the functions of the same beam."""
+        """Whether other spaces have functions that were made for the same beam."""
         return self.given.shares_functions(other.given)
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule on cells on which both the functions and the properties are smooth."""
+        """Gauss rule on cells within which the functions and the properties of the nearby beam are smooth."""
         cells = self.given.quadrature.cells
         ends = merge_breakpoints(np.concatenate([cells.ends, self.beam.breakpoints]))
         return ArcQuadrature(Cells(np.array(ends), cells.points))
 
 
-@lru_cache(maxsize=16)  # fields of a scene, and pairs of fields, use the same functions
+@lru_cache(maxsize=16)  # cached, as several fields of a scene use the same functions
 def _build_space(spaces: NearbySpaces, conditions: RootConditions) -> NearbySpace:
     return NearbySpace(spaces, spaces.given.functions(conditions))
 
 
 @dataclass(frozen=True)
 class NearbySpace(SampledSpace):
-    """Trial functions of one beam on another.
+    """Trial functions that were made for one beam, and are used for a nearby beam.
 
     Parameters
     ----------
     spaces : NearbySpaces
-        The function spaces.
+        The function spaces, with the nearby beam.
     given : MomentSpace
         The functions on the beam for which they were made.
     """

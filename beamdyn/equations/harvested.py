@@ -37,7 +37,10 @@ def electric_rows(equations: Equations, full: Equations, beam: Beam) -> tuple[Vo
 
 
 def strain_rows(equations: Equations, beam: Beam) -> np.ndarray:
-    """Compute the strain of the layer's outer face at k positions along it, by unit coordinates: (k, n)."""
+    """Compute the strain of the piezoelectric layer's outer face per unit of each of n coordinates: (k, n).
+
+    The k positions are spread evenly along the layer.
+    """
     assert beam.electrodes is not None, "electrodes stand on a layer"
     xi, shape = beam.electrodes.inside(np.linspace(0, 1, _FACES)), equations.shapes[BENDS]
     rows = np.zeros((_FACES, equations.size))

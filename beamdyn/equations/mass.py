@@ -72,7 +72,10 @@ class PiecewisePolynomials:
         return np.clip(np.searchsorted(self.ends, xi, side="right") - 1, 0, len(self.ends) - 2)
 
     def contained(self, counts: Sequence[int], fewer: Sequence[int], continuous: bool) -> np.ndarray:
-        """Mark those of `counts` polynomials per part that a set of `fewer` per part also contains."""
+        """Mark the polynomials of one set that a smaller set also contains.
+
+        The sets have `counts` and `fewer` polynomials on each part.
+        """
         bubbles = 2 if continuous and len(counts) > 1 else 0
         on_parts = [np.arange(max(n - bubbles, 0)) < m - bubbles for n, m in zip(counts, fewer, strict=True)]
         hats = np.ones(len(self.ends) if bubbles else 0, dtype=bool)
@@ -92,7 +95,10 @@ def gram_by_mass(beam: Beam, space: Space) -> np.ndarray:
 
 
 def product_by_mass(beam: Beam, spaces: Spaces, rows: RootConditions, columns: RootConditions) -> np.ndarray:
-    """Integrate products of functions of `rows` with functions of `columns`, weighted by the mass [kg]."""
+    """Integrate products of two functions, weighted by the mass [kg], for each function of two sets.
+
+    `rows` and `columns` are the root conditions of the two sets.
+    """
     of_sections = spaces.product(beam.mass_per_length, rows, columns) * beam.length
     return of_sections + product_at_lumps(beam, spaces.functions(rows), spaces.functions(columns))
 

@@ -5,14 +5,16 @@ but the bending moment M is smooth.  Trial functions with the curvature
 
     w'' = M(x) / EI(x)
 
-thus need no more functions for a hundred segments than for one.  The moments are polynomials over the whole
-beam, and the moments by inertia and tension while the beam vibrates in the first of these functions,
+thus need no more functions for a hundred segments than for one.  Two kinds of moments are used: polynomials
+over the whole beam, and the moments due to inertia and tension of a beam that vibrates in the shapes w that
+the polynomials cause,
 
     int_x^1 int_s^1 rho A w,  int_x^1 N w',
 
-as in a step of inverse iteration; these have the small kinks of M, which polynomials cannot represent.  In
-deflection by shear and in stretch, the slope is a force over a stiffness.  Pretwisted sections bend in both
-directions under a moment in one: curvatures are moments times entries of the sections' compliance.
+as in a step of inverse iteration.  Moments of the second kind have the small kinks of M, which polynomials
+cannot represent.  For deflection by shear and for stretch, the slope is a force divided by a stiffness.
+Pretwisted sections bend in both directions under a moment in one: curvatures are moments times entries of the
+sections' compliance.
 
 At a point mass the moment has a kink, and the shear force a jump: each part of the beam between point masses
 has its own polynomials; the moments are continuous between parts.
@@ -50,8 +52,8 @@ from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, inertia_about_shear_centre, section_tensor, weight_degree
 
 NODES = 12  # number of nodes on each cell, through which quotients of moment and stiffness are interpolated
-# Size of an interpolant's last coefficients, over its largest coefficient, at which a cell is resolved; the
-# error of eigenvalues is proportional to its square.
+# Size of an interpolant's last coefficients, divided by its largest coefficient, below which a cell is
+# resolved; the error of eigenvalues is proportional to the square of this ratio.
 _RESOLVED = 1e-7
 _ROUNDING = 10 * float(np.finfo(float).eps)  # relative rounding error of a sum of polynomials
 _PHASE = 7.0  # largest phase change [rad] of the highest polynomial within a cell
@@ -64,9 +66,10 @@ Values: TypeAlias = "dict[tuple[int, int], np.ndarray]"  # entries of a tensor, 
 # Order of the derivative of the displacement that each stiffness resists.
 _ORDERS = {"bending_stiffness": 2, "shear_stiffness": 1, "axial_stiffness": 1}
 _ORDERS |= {"torsion_stiffness": 1, "warping_stiffness": 2}
-_TURNING = ("torsion_stiffness", "warping_stiffness")  # stiffnesses against turns about the beam
+_TURNING = ("torsion_stiffness", "warping_stiffness")  # stiffnesses that resist twist
 _SCALAR = ("axial_stiffness", *_TURNING)  # stiffnesses without a direction
-# By stiffness: displacements, named by the stiffness against each, whose inertia strains the beam against it.
+# For each stiffness: the displacements whose inertial forces cause the internal force that this stiffness
+# resists; each displacement is named by the stiffness that resists it.
 _COUPLED = {
     "bending_stiffness": ("bending_stiffness", "shear_stiffness"),
     "shear_stiffness": ("bending_stiffness", "shear_stiffness"),
@@ -108,7 +111,7 @@ class MomentSpaces(FieldsOnly, SampledSpaces):
         return self.coarse
 
     def shares_functions(self, other: MomentSpaces) -> bool:
-        """Whether other spaces have the same beam and sizes: cells and forces depend on all stiffnesses."""
+        """Whether other spaces have an equal beam and equal sizes, on all of which the functions depend."""
         return self == other
 
     @cached_property
@@ -118,13 +121,16 @@ class MomentSpaces(FieldsOnly, SampledSpaces):
 
     @cached_property
     def cells(self) -> np.ndarray:
-        """Ends of cells on which every compliance and the highest polynomial are resolved, as x/L."""
+        """Ends x/L of cells, each so short that an interpolating polynomial represents all functions on it.
+
+        These functions are the entries of the sections' compliances, and the polynomial of highest degree.
+        """
         phases, ends = self.polynomials.phases, np.array(self.beam.breakpoints)
         halved = _halve(ends, lambda left, right: phases(left, right, self.forces) > _PHASE)
         return _halve(halved, self._are_unresolved)
 
     def _are_unresolved(self, left: np.ndarray, right: np.ndarray) -> np.ndarray:
-        """Mark the cells, with given ends, that are too long to resolve some entry of a compliance."""
+        """Mark the cells on which some entry of a compliance is not represented by its interpolant."""
         at_nodes, unresolved = Sampler(left, right, NODES), np.zeros(len(left), dtype=bool)
         for tensor in self._stiffnesses.values():
             values = {entry: at_nodes(profile).reshape(-1, NODES) for entry, profile in tensor.items()}
@@ -199,7 +205,7 @@ def _halve(ends: np.ndarray, are_coarse: Callable[[np.ndarray, np.ndarray], np.n
     return np.append(np.sort(np.concatenate(fine)), ends[-1])
 
 
-@lru_cache(maxsize=16)  # fields of a scene, and pairs of fields, use the same functions
+@lru_cache(maxsize=16)  # cached, as several fields of a scene use the same functions
 def _build_space(spaces: MomentSpaces, conditions: RootConditions) -> MomentSpace:
     return MomentSpace(spaces, conditions)
 
@@ -241,16 +247,16 @@ def _interpolation(points: int) -> np.ndarray:
 # Forces -------------------------------------------------------------------------------------------
 
 
-@lru_cache(maxsize=8)  # pretwisted sections bend in both directions under the same moments
+@lru_cache(maxsize=8)  # cached, as pretwisted sections bend in both directions under the same moments
 def _build_forces(
     spaces: MomentSpaces, stiffness: str, derivatives: int, direction: int
 ) -> tuple[np.ndarray, np.ndarray | None]:
     """Compute n forces or moments in one direction at the N nodes, and mark those of the coarser basis.
 
-    They deform the beam against `stiffness`, and their `derivatives`-th derivative is a load.  The first
-    forces are polynomials; the others are caused by inertia and tension in the displacements by the first.
-    The marks (n,) are True for forces that the coarser basis also has; they are None if it has different
-    forces.
+    The forces are internal forces of the kind that `stiffness` resists; their `derivatives`-th derivative is
+    a load per length.  The first ones are polynomials.  The others are due to inertia and tension of a beam
+    that is displaced as these polynomials deform it.  The marks (n,) are True for forces that the coarser
+    basis also has; they are None if the coarser basis has different forces.
     """
     beam, parts, causes = spaces.beam, spaces.polynomials, []
     # Causes of forces: the stiffness that resists a displacement, the order of the displacement's derivative,
@@ -285,17 +291,18 @@ def _build_forces(
     return np.concatenate([P, *caused]), np.concatenate(of_coarse)
 
 
-@lru_cache(maxsize=4)  # all directions share the same polynomials
+@lru_cache(maxsize=4)  # cached, as all directions share the same polynomials
 def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool) -> np.ndarray:
     """Evaluate polynomials on the parts of the beam, `counts` on each, at the nodes: (polynomials, nodes)."""
     return spaces.polynomials(spaces.nodes.xi, counts, continuous)
 
 
 def _share(counts: Sequence[int], causes: int) -> tuple[list[int], list[int]]:
-    """Split the number of forces per part into polynomials that cause other forces, and all polynomials.
+    """Return, for each part of the beam, the number of causing polynomials and the number of all polynomials.
 
-    Each of the `causes`, such as inertia, adds one force for each causing polynomial.  The split only affects
-    the space that the trial functions span; its error is estimated with fewer functions.
+    Each of the `causes`, such as inertia, adds one force for each causing polynomial; with all polynomials,
+    the forces on a part add up to its number in `counts`.  The split only affects the space that the trial
+    functions span; the error of that space is estimated with fewer functions.
     """
     causing = [count // (1 + causes) for count in counts]
     return causing, [count - causes * n for count, n in zip(counts, causing, strict=True)]
@@ -371,7 +378,7 @@ class MomentSpace(SampledSpace):
 
     @cached_property
     def _derivatives(self) -> list[np.ndarray]:
-        """Functions and derivatives at the points and, except for the highest, at the tip."""
+        """Functions and derivatives at the Gauss points and (but for the highest derivative) at the tip."""
         rows = [self._quotients[1]]
         for _order in reversed(range(self.conditions.derivatives)):
             rows.insert(0, self.spaces.quadrature.integrate(rows[0][:, : len(self.rule)]))
@@ -409,7 +416,7 @@ def _orthonormalize_nested(
     """Orthonormalize columns; the first vectors, whose number is returned, span the marked columns."""
     root = np.sqrt(weight)[:, None]
     first, rest = _span(_unit(columns[:, of_coarse] * root)), _unit(columns[:, ~of_coarse] * root)
-    for _ in range(2):  # the first pass leaves errors relative to the removed components
+    for _ in range(2):  # repeated, as the first subtraction leaves a rounding error
         rest = rest - first @ (first.T @ rest)
     return first.shape[1], np.concatenate([first, _span(rest)], axis=1) / root
 

@@ -91,20 +91,24 @@ class Ritz:
         """Build the function spaces on a beam."""
         if self.basis == "moments":
             return MomentSpaces(beam, self.functions, self.fewer)
-        # Gauss points on each segment: exact for Legendre functions, more than enough for eigenfunctions.
+        # Degree for which Gauss points are chosen: integrals of Legendre functions are then exact, and
+        # eigenfunctions have more than enough points.
         degree = self.functions if self.basis == "legendre" else 2 * self.functions + 10
         points, across = degree + 2 + weight_degree(beam) // 2, min(self.functions - 2, _MOST_ACROSS)
         return RitzSpaces(self, tuple(beam.breakpoints), points, max(2, across))
 
     def cells(self, beam: Beam) -> Cells:
-        """Return the segments as cells, with enough points for cosines of slopes of several turns."""
+        """Return the segments as cells, with enough Gauss points for cosines of angles of several turns."""
         spaces = self.spaces(beam)
         if isinstance(spaces, MomentSpaces):
             return Cells(spaces.cells, _POINTS_OF_MOMENTS)
         return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
 
     def coarser(self) -> Ritz:
-        """Return a smaller basis, whose results differ from this one's by more than this one's error."""
+        """Return a smaller basis, for the error estimate.
+
+        Its results differ from those of this basis by more than the error of the latter.
+        """
         return Ritz(self.fewer, self.basis)
 
     @property
@@ -150,7 +154,7 @@ class RitzSpaces(SampledSpaces):
 
     @property
     def fewer_across(self) -> int:
-        """Number of functions across in the coarser basis: one less of torsion, and one less of camber."""
+        """Number of functions across the width in the coarser basis: one of torsion and of camber less."""
         return max(2, self.across - 2)
 
     def shares_functions(self, other: RitzSpaces) -> bool:
@@ -252,7 +256,7 @@ def _integrated_legendre(
 
 
 def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integrations: int) -> np.ndarray:
-    """Integrate n Legendre polynomials on [a, b] repeatedly from the root; return values (n, k) at k xi."""
+    """Integrate n Legendre polynomials on [a, b] repeatedly from the root; evaluate them at xi: (n, k)."""
     half = (b - a) / 2
     scale = np.sqrt((2 * np.arange(n) + 1) / (b - a))[:, None]
     inside, beyond = (xi >= a) & (xi <= b), xi > b

@@ -199,7 +199,7 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
 
 
 def _embed(full: Equations, equations: Equations) -> np.ndarray:
-    """Compute the matrix from coordinates of given equations to those of equations with a free root."""
+    """Compute the matrix that transforms coordinates of `equations` to those of `full`, with a free root."""
     kept = np.zeros((full.size, equations.size))
     for name, shape in equations.shapes.items():
         end = full.blocks[name].stop

@@ -134,8 +134,9 @@ def terms(scene: Scene) -> Terms:
     Parameters
     ----------
     scene : Scene
-        The scene; without a motion, steady rotation at 1 rad/s is assumed.  Physics "auto" is the plain
-        Euler-Bernoulli beam; the neglected effects are then described as chosen by analyses.
+        The scene; without a motion, steady rotation at 1 rad/s is assumed.  For physics "auto", the terms are
+        those of the plain Euler-Bernoulli beam; the neglected effects are then described as ones that an
+        analysis adds where they matter.
 
     Returns
     -------
@@ -177,7 +178,10 @@ def _terms_by_name(scene: Scene) -> dict[str, list[Term | Load]]:
 
 
 def _describe(every: list[Term | Load], assembled: list[Term | Load], scene: SampledScene) -> Entry:
-    """Describe all terms with the same name, as they are in general and as assembled for the scene."""
+    """Make the entry for all terms of one name.
+
+    `every` has the terms and loads of this name that exist in general, `assembled` those of the scene.
+    """
     sizes = [float(np.abs(term.coefficient(scene.root)).max()) for term in assembled]
     largest, name = max(sizes, default=0.0), every[0].name
     explanation = _EXPLANATIONS.get(name, Explanation(name, "it is assembled"))

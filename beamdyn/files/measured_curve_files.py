@@ -35,7 +35,7 @@ _SHAPE = re.compile(r"\s*(?:mode )?shape at ([\d.eE+-]+ *[\w/]+)\s*(?=[,;\t]|$)"
 _OTHER_SHAPE = re.compile(r"\b(?:mode )?shape\b[^,;\t]*", re.IGNORECASE)
 _RESPONSE = re.compile(r"\s*(.+?) (?:by|per) (.+?)\s*")
 _MOST = 40  # largest number of mode shapes in a file
-_REMEDY = 'name yours by columns, as in --columns "{name} = {head}"'
+_REMEDY = 'rename your columns, as in --columns "{name} = {head}"'
 
 Half = Callable[[str], float]  # a function that returns half a unit of the last digit of a number as written
 
@@ -104,7 +104,7 @@ def _only(table: CsvTable, name: str, what: str) -> float:
 
 
 def _speed(table: CsvTable, given: float | None) -> float | None:
-    """Return the speed in the file [rad/s], if it has none the given one, which may be None."""
+    """Return the speed in the file [rad/s]; if the file has none, return the given speed or None."""
     if "speed" not in table.named():
         return given
     if given is not None:

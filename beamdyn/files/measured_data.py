@@ -26,7 +26,7 @@ from beamdyn.files.program_tables import UNIVERSAL, as_table, universal_table
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 
-_MOST_SPEED = 1e5  # highest speed [rad/s], 10^6 rpm: a higher one has a wrong unit
+_MOST_SPEED = 1e5  # highest accepted speed [rad/s], 10^6 rpm: a higher one must have a wrong unit
 _MOST = 40  # largest number of frequency columns
 _SPEED, _OF_ALL = "speed", "uncertainty"
 _KNOWN = {_SPEED: Quantity("rad/s", least=-_MOST_SPEED, most=_MOST_SPEED)}

@@ -177,7 +177,7 @@ def _lines_of_function(path: Path, found: Mapping[str, Any]) -> list[str]:
 def _kind_of(
     path: Path, found: Mapping[str, Any], axis: str, known: Mapping[int, tuple[str, str]]
 ) -> tuple[str, str]:
-    """Return this package's name for the data on an axis, and the unit."""
+    """Return the name that this package has for the kind of data on an axis, and its unit."""
     number = int(found.get(f"{axis}_spec_data_type", 0))
     if number not in known:
         kinds = ", ".join(f"{k} ({words})" for k, (words, _) in known.items())

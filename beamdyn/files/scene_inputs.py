@@ -131,7 +131,7 @@ def with_physics_as_table(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 def _auto_as_table(given: Any) -> Any:
-    """Return the table that means the same as the word "auto"."""
+    """Return a table with the same meaning if the word "auto" is given, else the given value."""
     if isinstance(given, Mapping):
         return given
     if given != AUTO_NAME:
@@ -144,7 +144,7 @@ def _in_a_list(key: str) -> BeforeValidator:
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
-            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets, one for each")
+            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets for each one")
         return given
 
     return BeforeValidator(refuse_one)
@@ -201,7 +201,7 @@ class _BeamInput(CoreSection):
 
 
 class RectangularInput(_BeamInput):
-    """[beam]: a beam of rectangular section."""
+    """The table [beam] for a beam of rectangular section."""
 
     width: Annotated[Along, Varying("m", "b", "width of the section", above=0)]
     thickness: Annotated[Along, Varying("m", "h", "thickness, in the direction of bending", above=0)]
@@ -227,7 +227,7 @@ class RectangularInput(_BeamInput):
 
 
 class StiffnessInput(_BeamInput):
-    """[beam]: a beam of any section, by its stiffness."""
+    """The table [beam] for a beam of any section, described by its stiffness."""
 
     mass_per_length: Annotated[Along, Varying("kg/m", "rho A", "mass per length", above=0)]
     bending_stiffness: Annotated[Along, Varying("N m2", "E I", "bending stiffness", above=0)]
@@ -247,7 +247,7 @@ class StiffnessInput(_BeamInput):
     ] = None
     second_shear_stiffness: Annotated[
         Along | None,
-        Varying("N", "kappa G A2", "shear stiffness across; the first one if not given", above=0),
+        Varying("N", "kappa G A2", "shear stiffness in the direction across; by default the first", above=0),
     ] = None
     rotary_inertia: Annotated[
         Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
@@ -263,14 +263,14 @@ class StiffnessInput(_BeamInput):
     ] = None
     mass_offset: Annotated[
         Along | None,
-        Varying("m", "c", "offset of the mass centre from the shear centre, across, for torsion"),
+        Varying("m", "c", "offset of mass centre from shear centre, in the direction across, for torsion"),
     ] = None
     tension_offset: Annotated[
         Along | None,
         Varying(
             "m",
             "t",
-            "offset of the tension centre from the shear centre, across; bending stiffnesses are about it",
+            "offset of tension centre from shear centre, across; bending stiffness is about the former",
         ),
     ] = None
 
@@ -282,7 +282,7 @@ class StiffnessInput(_BeamInput):
 
 
 class MatricesInput(_BeamInput):
-    """[beam]: a beam of sections that couple all strains, by their 6 x 6 matrices."""
+    """The table [beam] for a beam whose sections couple all strains, described by 6 x 6 matrices."""
 
     matrices: Annotated[
         list[list[Any]],
@@ -417,7 +417,7 @@ def _one_kind_of_beam(given: Any) -> Any:
     keys = given.keys() if isinstance(given, dict) else set()
     section, stiffness = ([k for k in _own(kind) if k in keys] for kind in (RectangularInput, StiffnessInput))
     if "matrices" in keys and section + stiffness:
-        raise ValueError(f"matrices has {', '.join(section + stiffness)}, too; give one of the two")
+        raise ValueError(f"give either matrices or {', '.join(section + stiffness)}, not both")
     if section and stiffness:
         raise ValueError(
             f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "
@@ -437,7 +437,7 @@ BeamInput = Annotated[
 
 
 class ModelInput(Section):
-    """[model]: what the model includes."""
+    """The table [model]: modal damping ratio and gravity."""
 
     damping_ratio: Annotated[
         float,
@@ -447,7 +447,7 @@ class ModelInput(Section):
 
 
 class SceneInput(CoreSection):
-    """A scene: the tables [beam], [mount], and where wanted [harvester] and others."""
+    """A scene file: the tables [beam] and [mount], and optional tables such as [harvester]."""
 
     beam: BeamInput
     mount: _MountInput

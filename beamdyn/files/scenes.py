@@ -52,7 +52,8 @@ def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[
     Raises
     ------
     ConfigError
-        If a number has no line of its own that could be replaced: an entry of a list, or a factor.
+        If a number has no line of its own that could be replaced, as an entry of a list, or the factor
+        "scale" on a property along the beam.
     """
     lines = text.splitlines()
     for path, value in values.items():
@@ -107,7 +108,9 @@ _STATION_NAMES |= {plain_name(head): name for name, heads in _HEADS.items() for 
 
 
 def read_station_file(text: DataText, more: Mapping[str, Quantity] | None = None) -> CsvTable:
-    """Read stations from a CSV file: its columns by keys of the beam; positions must ascend.
+    """Read a CSV file of stations as a table whose columns have the names of the keys in [beam].
+
+    The positions must ascend.
 
     Parameters
     ----------

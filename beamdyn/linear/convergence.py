@@ -30,7 +30,7 @@ from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
 from beamdyn.scene.validity import check_speeds
 
 _MODES = 5  # number of modes for which physics and trial functions are chosen, if all functions are kept
-_STRAIGHT = "linear models are those about the straight beam"
+_STRAIGHT = "linear models are of small motions about the straight beam"
 _OR_ALL = Named("or None, which keeps all functions", "or auto")
 
 
@@ -77,9 +77,9 @@ def model_at_speed(
     discretization: DiscretizationChoice,
     tolerance: float | None = None,
 ) -> ModelAtSpeed:
-    """Build the linear model of a scene with a number of modes; trial functions are chosen without damping.
+    """Build the linear model of a scene with a number of modes.
 
-    For the tolerance see `natural_modes`.
+    Trial functions are chosen by the modes of the undamped beam.  For the tolerance see `natural_modes`.
 
     Raises
     ------
@@ -108,15 +108,18 @@ Evaluation = Callable[[ModelAtSpeed], np.ndarray]
 # A model, its value, the model with twice as many modes (None if there is none), and that model's value.
 _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
-# Least number of modes for modes="auto"; at a loose tolerance, trial functions are first chosen for these.
+# Smallest number of modes for modes="auto"; at a loose tolerance, trial functions are first chosen for so
+# many.
 _FIRST = 4
 _ACCURATE = 8  # number of modes for which trial functions are first chosen at the default tolerance
 _MOST = 40  # number of modes beyond which a model is not refined further
-# Allowed error of natural frequencies over that of a response: resonance magnifies errors of frequency.
+# Allowed error of natural frequencies, divided by that of a response: resonance magnifies errors of
+# frequency.
 _OF_FREQUENCIES = 0.01
 # Tolerance at and below which the default models are used, with a margin for rounding.
 _DEFAULT = 1.001 * DEFAULT_TARGET
-# Factor on the tolerance for trial functions after the error of a response exceeded its tolerance.
+# Factor on the tolerance of natural frequencies, by which trial functions are chosen, each time that the
+# error of a response exceeds its tolerance.
 _FINER = 1e-3
 _MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass matrix, relative to the largest
 _ROUNDING = 1e-12  # rounding error of a value relative to the largest value
@@ -265,7 +268,10 @@ def _add_modes(
         return doubled(larger, finer)
 
     def settles(found: _Doubled) -> bool:
-        """Return whether more modes change the value by at most tolerance / margin, over its largest."""
+        """Return whether twice as many modes change the value by less than the tolerance allows.
+
+        The tolerance is divided by a margin, and is relative to the largest value.
+        """
         _, value, _, finer = found
         share = tolerance / LINEAR_MODES.factor
         return finer is not None and bool(np.abs(finer - value).max() <= share * np.abs(finer).max())
@@ -305,7 +311,9 @@ def _with_error(
         value
     ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
     error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
-    if model.scene.models_width:  # meshes, and the largest bases, differ along the beam alone
+    # The coarser mesh or basis may have as many functions across the width, so that these need a comparison
+    # too.
+    if model.scene.models_width:
         narrow = FewerAcross(model.discretization)
         fewer = evaluate(ModelAtSpeed(Model(model.model.scene, narrow), model.speed, model.modes))
         known = narrow.has_fewer_of_both(model.scene.modelled_beam)

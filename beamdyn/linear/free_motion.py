@@ -23,12 +23,13 @@ import scipy.linalg
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 
 _EPS = float(np.finfo(float).eps)
-_MASSLESS = 16 * _EPS  # mass r^2 of a coordinate, over the largest, up to which it counts as 0
-# Ratio of a pole to the shift below which the pole counts as 0: rounding eps moves double poles by its square
-# root.
+_MASSLESS = 16 * _EPS  # mass r^2 of a coordinate, divided by the largest, up to which it counts as 0
+# Ratio of a pole to the shift below which the pole counts as 0: a rounding error eps moves double poles by
+# about the square root of eps.
 _STILL = 1e-6
-_INFINITE = 1e-12  # inverse pole, over the largest, up to which it counts as 0: rounding
-_NEARLY_FREE = 1e-6  # squared frequency over an elastic mode's, below which the stiffness is shifted
+_INFINITE = 1e-12  # inverse pole, divided by the largest, up to which it is 0 within rounding
+# Squared lowest frequency, divided by that of an elastic mode, below which the stiffness is shifted.
+_NEARLY_FREE = 1e-6
 _ELASTIC = 2  # number of modes that may lack stiffness, a free rotation in each plane; the next is elastic
 
 
@@ -161,7 +162,10 @@ def _diagonal(M: np.ndarray, K: np.ndarray, shift: float) -> BalancedCoordinates
 
 
 def _safe_shift(M: np.ndarray, K: np.ndarray) -> float:
-    """Choose a shift, of the highest frequencies' size, with which K + shift^2 M is positive definite."""
+    """Choose a shift [1/s] with which K + shift^2 M is positive definite.
+
+    It is about as large as the highest frequencies.
+    """
     mass, stiffness = np.diag(M), np.abs(np.diag(K))
     massive = mass > _MASSLESS * mass.max()
     shift = np.sqrt(np.max(stiffness[massive] / mass[massive]) or 1.0)

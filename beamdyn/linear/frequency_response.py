@@ -26,8 +26,8 @@ from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 
 _TURN = 2 * np.pi
-_HIGHEST = 1e12  # highest accepted frequency [Hz], that of the vibration of atoms
-_DIRECT = 300  # number of trial functions up to which all are kept: some milliseconds per frequency
+_HIGHEST = 1e12  # highest accepted frequency [Hz]: atoms vibrate at it, so that beam theory ends below
+_DIRECT = 300  # number of trial functions up to which all are kept, at some milliseconds per frequency
 
 
 @dataclass(frozen=True)

@@ -238,7 +238,8 @@ def matrices(
 def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
     """Yield warnings about the validity of the linear equations at the speed, as for natural modes."""
     yield from warn_of_left_out(model.scene)
-    # Number of the lowest modes examined for growth.
+    # Only the lowest modes are examined for growth: those in the model, five at most if it keeps all
+    # functions.
     solver = model.model.solver
     found = solver.solve(np.array([model.speed]), min(model.modes or MOST_JUDGED, solver.size))
     growing = int((np.real(found.eigenvalue) > 0).sum())
@@ -265,9 +266,12 @@ def list_inputs(given: Sequence[Any] | None, scene: Scene) -> list[Excitation]:
 
 
 def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
-    """Compute the load of an excitation; refuse a direction fixed in space: the input matrix would vary."""
+    """Compute the load of an excitation whose direction turns with the beam.
+
+    An excitation of fixed direction is refused, because its input matrix would vary as the beam turns.
+    """
     drives = model.drives(excitation)
-    bound = "on the rotating beam it acts at its frequency plus and minus the speed: no constant matrix"
+    bound = "on the rotating beam its input matrix varies: it acts at its frequency plus and minus the speed"
     remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts it'
     refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
     return drives[0]

@@ -47,8 +47,8 @@ from beamdyn.linear.spectra import PowerSpectrum, SpectrumPiece
 from beamdyn.scene.scene import Scene
 
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(16)
-# Distance of a pole from a piece of the spectrum, over the piece's length, below which the pole is integrated
-# separately.
+# Distance of a pole from a piece of the spectrum, divided by the piece's length, below which the pole is
+# integrated separately.
 _NEAR = 1.5
 _UNDAMPED = 1e-12  # ratio of a pole's decay rate to its size below which the decay counts as rounding
 
@@ -144,7 +144,8 @@ def pole_integrals(
         f, w = (start + end) / 2 + half * _POINTS, half * _WEIGHTS
         S = weighted(piece, f)
         near = np.abs(mu - np.clip(np.real(mu), start, end)) < _NEAR * 2 * half
-        # The density at a pole; at a pole far from all parts of the piece, a power law may overflow.
+        # The density at each pole that is near.  A pole far from all parts of the piece is replaced by the
+        # end of the piece, as a power law may overflow there.
         at_pole = near * weighted(piece, np.where(near.any(axis=0), mu, piece.end))
         smooth = (S[..., None] - at_pole[:, None]) / (f[..., None] - mu)
         whole += float((w * S).sum())

@@ -1,9 +1,9 @@
 """The linear equations of a scene at one steady speed, in modes at that speed and their residual flexibility.
 
 The coordinates are those of the lowest modes at the speed, without damping and gyroscopic coupling, or of all
-trial functions of the discretization.  What modes leave out follows a slow excitation without delay: its
-static deflection is that of all functions minus that of the modes, the residual flexibility (Craig and
-Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).
+trial functions of the discretization.  The modes that are left out follow a slow excitation without delay.
+Their static deflection, the residual flexibility, is the deflection of all functions minus that of the
+retained modes (Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).
 
 In shapes of arrays, n counts retained coordinates, and N all trial functions.
 """
@@ -49,7 +49,7 @@ _LAYERS = Words(Named("Harvester.on puts them on", "a table [harvester] puts the
 
 @dataclass(frozen=True)
 class HarmonicDrive:
-    """Load of an excitation at one harmonic of the rotation, and its direct effects, per unit of the input.
+    """Load of an excitation at one harmonic of the rotation, and its further effects, per unit of the input.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ class ModelAtSpeed(FieldsOnly):
         for name, shape in kept.shapes.items():
             shapes[full.blocks[name], kept.blocks[shape.block]] = shape.matrix
         if kept.voltage is not None and (circuit := self._mechanical.circuit) is not None:
-            for name, bent in circuit.bent.items():  # voltage also bends the beam in the modes left out
+            for name, bent in circuit.bent.items():  # the voltage also deflects the modes left out
                 shapes[full.blocks[name]] += np.outer(bent, kept.voltage.row)
         return shapes
 
@@ -192,7 +192,7 @@ class ModelAtSpeed(FieldsOnly):
             load += full.deflection(np.array(force[:1]), direction=force[1])[:, 0]
         load = load if np.imag(load).any() else np.real(load)
         if not load.any():
-            bound = "it does not load the beam: it acts along it, or in a direction in which it is rigid"
+            bound = "no load: it acts along the beam, or in a direction in which the beam is rigid"
             raise InvalidValue("input", excitation.label, bound, "model both planes, or turn the beam")
         return HarmonicDrive(self.shapes.T @ load, self._residual(load), accelerations, force)
 
@@ -252,7 +252,7 @@ class ModelAtSpeed(FieldsOnly):
         return np.array([self._per_moment(observation) * (total - by_kept), 0.0, 0.0])
 
     def _of_layers(self, observation: OfLayers) -> tuple[np.ndarray, int, np.ndarray]:
-        """Express an output of layers by the coordinates of all trial functions, and by the retained ones.
+        """Express an output of piezoelectric layers by all trial functions, and by the retained coordinates.
 
         Return the row for all functions, the order of the time derivative to which both rows apply, and the
         row for retained coordinates.  Where the circuit has a coordinate, the row for all functions applies
@@ -289,11 +289,11 @@ class ModelAtSpeed(FieldsOnly):
         return Row(position, sum((t * w for t, w in zip(turn, each, strict=False)), zero), each[direction])
 
     def _carried(self, direction: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the acceleration in one direction by unit deflections (2,) and velocities (2,) in both.
+        """Compute the acceleration in one direction per unit of the deflections and velocities in both.
 
-        Rotation adds -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection, and 2 omega S of the velocity in the
-        other direction, with S the sine of the precone, and d and n the components of the two directions in
-        the plane of rotation and normal to it.
+        Both results have the shape (2,).  Rotation adds -omega^2 (d_i d_j + S^2 n_i n_j) of the deflection,
+        and 2 omega S of the velocity in the other direction, with S the sine of the precone, and d and n the
+        components of the two directions in the plane of rotation and normal to it.
         """
         (d, n), (_, sine) = plane_components(self.scene), exact_cos_sin(self.scene.mount.precone)
         pull = -(self.speed**2) * (d[direction] * np.array(d) + sine**2 * n[direction] * np.array(n))
@@ -309,7 +309,7 @@ class ModelAtSpeed(FieldsOnly):
         return observation.per_moment(self.scene) if isinstance(observation, StrainAtRoot) else 1.0
 
     def _at_speed(self, by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray) -> np.ndarray:
-        """Sum the rows of all quantities of root motion, times each at the speed; `zero` if there is none."""
+        """Sum the rows of all quantities of root motion, each times its value at the speed, plus `zero`."""
         root, total = self._root, zero
         for quantity, row in by_quantity.items():
             total = total + float(getattr(root, quantity)) * row
@@ -324,9 +324,10 @@ class ModelAtSpeed(FieldsOnly):
 
 
 _UNRESOLVED = 0.01  # relative error of a pole beyond which it may be paired with the pole of another mode
-# Distance between a pole of the two coarser models, relative to the pole, above which it is not used; and the
-# least assumed ratio of the distance between the two finer models to it: several fields, segments or elements
-# do not converge as steadily as one.
+# The error of a pole is estimated from three models: a fine, a coarse and a coarser one. The distance between
+# the poles of the coarse and the coarser model is used only if it is below _STEADY, relative to the pole. The
+# distance between the fine and the coarse model is assumed to be at least _LEAST_RATIO times that distance,
+# as several fields, segments or elements do not converge as steadily as one.
 _STEADY, _LEAST_RATIO = 0.01, 0.2
 _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the matrices
 
@@ -334,10 +335,13 @@ _ROUNDING = 4 * float(np.finfo(float).eps)  # relative rounding error of the mat
 def pole_errors(model: ModelAtSpeed) -> np.ndarray:
     """Estimate the relative errors of the poles of a model, in the order of `FreeMotion.poles`.
 
-    The error by modes left out, through damping and gyroscopic terms, is a pole's distance from its partner
-    among the poles of all functions; these are compared with those of two coarser discretizations.  An
-    infinite pole, of a coordinate without mass, has no error: nan.  Beyond 1 % a pole is unresolved: inf; the
-    first unresolved pole above a resolved one makes all poles of larger magnitude unresolved, too.
+    The error has two parts.  Modes that are left out change a pole through damping and gyroscopic terms: this
+    part is its distance from the corresponding pole of a model with all functions.  The error of the
+    discretization is estimated by comparing the latter pole with those of two coarser discretizations.
+
+    An infinite pole, of a coordinate without mass, has the error nan.  A pole with an error beyond 1 % is
+    unresolved, and has the error inf; the first unresolved pole above a resolved one makes all poles of
+    larger magnitude unresolved, too.
     """
     kept, fine, coarse = model.free_motion, model.model, model.model.coarser
     whole, *coarser = (
@@ -362,7 +366,10 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
 
 
 def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pair each pole with another model's pole; return distances [1/s] (inf if unpaired) and partners."""
+    """Pair each pole with a pole of another model, and return their distance [1/s] and the other pole.
+
+    A pole without a partner has the distance inf, and is itself returned as the other pole.
+    """
     apart = np.abs(poles[:, None] - others)
     scale = np.maximum(np.abs(poles), _ROUNDING * np.abs(poles).max(initial=0.0))[:, None]
     rows, partners = linear_sum_assignment(apart / np.where(scale == 0, 1.0, scale))

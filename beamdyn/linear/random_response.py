@@ -191,7 +191,11 @@ def random_response(
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
 
     def density(model: ModelAtSpeed) -> np.ndarray:
-        """Compute the one-sided density at f [Hz] from the input's at +-f - h n, h being a harmonic."""
+        """Compute the one-sided density of the response at the frequencies f [Hz].
+
+        It follows from the density of the input at |f - h n|, for harmonics h of the rotation with n turns
+        per second.
+        """
         total = np.zeros(len(f))
         for h, H in _expand(model, model.drives(drive), seen).items():
             size = np.abs(H(2j * np.pi * f)) ** 2
@@ -270,7 +274,7 @@ def rms_by(
     spectrum: spectra.PowerSpectrum | float,
     outputs: Sequence[inputs_outputs.Observation],
 ) -> np.ndarray:
-    """Compute the root mean squares by one model; arguments as for `root_mean_squares`."""
+    """Compute the root mean squares (k,) of k outputs of a model; arguments as for `root_mean_squares`."""
     check_stable(model)
     drives = model.drives(drive)
     squares = (_mean_square(_expand(model, drives, seen), spectrum, model.speed) for seen in outputs)

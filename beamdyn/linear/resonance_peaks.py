@@ -24,12 +24,13 @@ from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.linear.transfer import ModalSum, modal_sums, respond
 
 _TURN = 2 * np.pi
-_DENSE = 0.1  # step of samples over the distance to the nearest pole
-_HALVINGS = 60  # number of halvings of an interval, which reach rounding
+_DENSE = 0.1  # distance between samples, divided by the distance to the nearest pole
+_HALVINGS = 60  # number of halvings after which an interval is as short as rounding errors
 _UNDAMPED = 1e-10  # largest damping ratio that is 0 within rounding
 _ROUNDING = 1e-9  # relative accuracy of frequency, magnitude and bandwidth of a peak
 _SHARE = 0.1  # accuracy of a peak's values, as a fraction of the tolerance
-# Height of a peak above the neighbouring minima, over its magnitude, below which it counts as rounding.
+# Height of a peak above the neighbouring minima, divided by its magnitude, below which it is a rounding
+# error.
 _LEVEL = 1e-10
 # Relative difference between the sum over modes and the solution of the equations, above which the response
 # is only rounding error.
@@ -69,9 +70,9 @@ class ResonancePeaks:
     harmonic : ndarray of int, shape (p,)
         Harmonics of the rotation in the response.
     frequency_error, size_error, bandwidth_error : ndarray, shape (p,)
-        Estimated errors, by the distance from the nearest peak of a coarser discretization and, where modes
-        are left out, of more modes; inf where these have none, or no bandwidth, and nan of a magnitude that
-        is inf or a width that is nan.
+        Estimated errors: the distance from the nearest peak of a model with a coarser discretization and,
+        where modes are left out, of a model with more modes.  They are inf if such a model has no peak, or
+        its peak no bandwidth.  The error of an infinite magnitude, or of a bandwidth that is nan, is nan.
     """
 
     frequency: np.ndarray
@@ -110,7 +111,8 @@ def find_peaks(
         Target of the error, relative to the magnitude and to the width of a peak; rounding if not given.
     """
     share = max(_SHARE * tolerance, _ROUNDING)
-    top = 2 * band[1] + abs(model.speed) / _TURN  # flanks of peaks reach beyond the band
+    # Highest frequency at which the response is sampled, as flanks of peaks reach beyond the band.
+    top = 2 * band[1] + abs(model.speed) / _TURN
     found = sorted(
         peak for peak in _peaks(model, drive, seen, top, share) if band[0] < peak.frequency < band[1]
     )
@@ -132,7 +134,7 @@ def _error(peak: Peak, compared: list[tuple[float, list[Peak]]], share: float) -
     `compared` contains a margin and the peaks of each model, `share` the relative accuracy of all peaks.
     """
     own = np.array(peak[:3])
-    with np.errstate(invalid="ignore"):  # a magnitude may be inf
+    with np.errstate(invalid="ignore"):  # the difference of infinite magnitudes is nan
         # The frequency's rounding error is relative to the bandwidth, or to the frequency if that is unknown.
         width = np.nan_to_num(peak.bandwidth, nan=peak.frequency)
         sizes = np.array([width, peak.size, peak.bandwidth])
@@ -272,9 +274,10 @@ def _bisect(
     origin: np.ndarray,
     share: float,
 ) -> np.ndarray:
-    """Bisect p intervals for the end of a condition that holds at their start.
+    """Find, in each of p intervals, where a condition that holds at the start ceases to hold: shape (p,).
 
-    The accuracy is the fraction `share` of the distance from `origin`.
+    `as_at_start(x)` returns whether it holds at the positions x (p,).  The intervals are bisected until they
+    are shorter than the fraction `share` of their distance from `origin`.
     """
     for _ in range(_HALVINGS):
         if (np.abs(end - start) <= share * np.abs(end - origin)).all():

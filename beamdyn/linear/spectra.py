@@ -118,7 +118,7 @@ class PowerSpectrum:
         one_of("interpolation", self.interpolation, get_args(BetweenPoints))
         f, S = ascending("psd.frequencies", self.frequencies), real_array("psd.values", self.values)
         if len(f) != len(S) or len(f) < 2:
-            bound = f"{len(S)} values at {len(f)} frequencies; give as many, at least two"
+            bound = f"give as many values (here {len(S)}) as frequencies ({len(f)}), at least two"
             raise InvalidValue("psd.values", self.values, bound)
         refuse(f < 0, "psd.frequencies", f, "Hz", "give 0 or more: the density is one-sided")
         refuse(
@@ -296,7 +296,7 @@ _STEP = 0.02  # relative step between listed frequencies of the input
 # Largest logarithm of the ratio of the input's densities at two neighbouring listed frequencies.
 _STEEPEST = 0.1
 _DECADES = 3  # number of decades in which frequencies are listed for an interval that begins at 0
-_CLOSE = 0.2  # step near a resonance, relative to the distance from it or to its bandwidth
+_CLOSE = 0.2  # step near a resonance, relative to the larger of its half bandwidth and the distance from it
 # Range on each side of a resonance in which listed frequencies are dense: its frequency plus this number of
 # half bandwidths.
 _REACH = 30.0

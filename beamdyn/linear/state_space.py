@@ -151,20 +151,27 @@ def _refuse_delayed_strain(scene: Scene, observed: Sequence[Observation]) -> Non
 
 
 class _Rates(NamedTuple):
-    """Velocities of all coordinates, accelerations of those with mass, per unit of states and of inputs."""
+    """Velocities of all coordinates, and accelerations of those with mass.
+
+    Each is a pair of matrices: per unit of the states, and per unit of the inputs.
+    """
 
     velocity: tuple[np.ndarray, np.ndarray]
     acceleration: tuple[np.ndarray, np.ndarray]
 
 
 def _rates(model: ModelAtSpeed, loads: np.ndarray) -> _Rates:
-    """Compute velocities and accelerations by loads of unit inputs (columns); only rates of a charge."""
+    """Compute velocities and accelerations per unit of each state and of each input.
+
+    `loads` has the load of a unit of each input in its columns.  The charge of a circuit has no mass: its
+    rate follows from the equations, and is not a state.
+    """
     n = model.equations.size
     m = model.mechanical.stop
     M = model.M[:m, :m]
     values = np.linalg.eigvalsh(M)
     if values[0] < _MASSLESS * values[-1]:
-        bound = "some coordinates have no mass, so that their rates are no states"
+        bound = "some coordinates have no mass, so that their rates cannot be states"
         raise InvalidValue("modes", model.modes, bound, "give a number of modes")
     of_state = np.linalg.solve(M, -np.hstack([model.K[:m], model.C[:m, :m]]))
     of_load = np.linalg.solve(M, loads[:m])

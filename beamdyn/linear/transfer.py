@@ -2,7 +2,7 @@
 
 For many frequencies, a transfer function is evaluated as a sum over a model's free motions, which is fast.
 
-Each free motion adds one term over 1 - s t_k, with its inverse pole t_k = 1/p_k: see
+Each free motion adds one term, divided by 1 - s t_k, with its inverse pole t_k = 1/p_k: see
 `beamdyn.linear.free_motion`.  The lowest poles belong to the largest t_k, which are the accurate ones;
 coordinates without mass have t_k = 0.
 
@@ -82,7 +82,7 @@ def modal_sums(
 
 
 _GROWING = 1e-6  # ratio of growth rate to magnitude of a pole above which the growth exceeds rounding
-# Ratio of a pole to an elastic mode's, below which the pole counts as 0: its square is 0 within rounding.
+# Ratio of a pole to that of an elastic mode, below which it counts as 0: its square is 0 within rounding.
 _STILL = 1e-6
 _PLANES = 2  # number of planes in which the beam may rotate freely about its root, with two poles at 0 each
 _AT_ONCE = 2_000_000  # number of matrix entries in memory when equations are solved at many frequencies

@@ -1,9 +1,10 @@
 """Virtual displacements of a beam that is cut at stations, by which its internal loads are found.
 
 The principle of virtual work gives the force or moment with which the part outboard of a cut acts on the part
-inboard, if the part outboard moves as a rigid body while the rest stays: along the beam, across it, or by a
-rotation about the cut.  These displacements stand here after the trial functions of a discretization, so
-that the fields (`beamdyn.equations.fields`) write all their terms for them, too: no physics is written twice.
+inboard, if the part outboard moves as a rigid body while the part inboard stays: along the beam, across it,
+or by a rotation about the cut.  Here these displacements are appended to the trial functions of a
+discretization, so that the fields (`beamdyn.equations.fields`) assemble all their terms for them, too, and no
+physics is programmed twice.
 
 A rotation about the cut is a kink.  Its curvature, a delta function at the cut, is kept in all terms but the
 product of two curvatures: the work of the bending moment there gives the moment that is to be computed.
@@ -48,7 +49,7 @@ class CutQuadrature:
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Quadrature weights, then 1 for each station, for the delta functions of virtual displacements."""
+        """Quadrature weights of the points, then the weight 1 for the delta function at each station."""
         _, w = gauss_rule(self.cells.points)
         inside = (np.diff(self._ends)[:, None] / 2 * w).ravel()
         return np.concatenate([inside, np.ones(len(self.stations.xi))])
@@ -61,7 +62,9 @@ class CutQuadrature:
 
 @dataclass(frozen=True)
 class CutSpace(SampledSpace):
-    """Trial functions, followed by rotations (if functions have slopes) and translations at each cut.
+    """Trial functions, followed by the virtual displacements of the part outboard of each cut.
+
+    The virtual displacements are rotations, if functions have slopes, and then translations.
 
     Parameters
     ----------
@@ -102,7 +105,11 @@ class CutSpace(SampledSpace):
 
     @cached_property
     def samples(self) -> list[np.ndarray]:
-        """Values and derivatives at the points; at stations, virtual displacements have 0 or deltas."""
+        """Values of the functions and of each derivative at the points: (functions, points) each.
+
+        At the stations, virtual displacements have the value 0; but the second derivative of a rotation has
+        the weight of its delta function.
+        """
         count, values = len(self.quadrature.stations.xi), []
         for order in range(self.derivatives + 1):
             sampled = self.evaluate(self.points, order)
@@ -117,7 +124,7 @@ class CutSpace(SampledSpace):
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate `order`-th derivatives with respect to x/L, without deltas: one row for each function."""
+        """Evaluate `order`-th derivatives by x/L, without delta functions: one row for each function."""
         stations = self.quadrature.stations
         cut, least = stations.xi[:, None], stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
         moved = (np.asarray(xi) > least[:, None]).astype(float)  # 1 for points outboard of each cut
@@ -132,7 +139,10 @@ class CutSpace(SampledSpace):
         return self.product(self, weight, (order, order))
 
     def product(self, columns: CutSpace, weight: Profile, orders: tuple[int, int]) -> np.ndarray:
-        """Integrate a weight times derivatives of functions of this space and of another."""
+        """Integrate over x/L a weight times derivatives of functions of this space and of `columns`.
+
+        `orders` are the orders of the two derivatives.  The product of two delta functions is left out.
+        """
         rule = self.weights(weight)
         if orders == (2, 2):
             rule[-len(self.quadrature.stations.xi) :] = 0.0
@@ -173,7 +183,10 @@ class CutSpaces:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate a weight times derivatives of each pair of functions, of `rows` and of `columns`."""
+        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+
+        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        """
         return self.functions(rows).product(self.functions(columns), weight, orders)
 
     @property

@@ -93,7 +93,11 @@ class LoadCycles(SceneResult, JudgedByRepeating):
         return np.array(found.ranges.max(initial=0.0))
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Find the largest range with an effect added: `as_deflection`, or if None, by a simulation."""
+        """Find the largest range with the effect `name` added to the scene.
+
+        It is estimated from the change of the deflection if `TransientLoads.as_deflection` can do so;
+        otherwise a simulation is repeated.
+        """
         known = None if self.loads is None else self.loads.as_deflection(self.judged(self), name)
         return known or super().solve(scene, name)
 
@@ -158,8 +162,8 @@ def count_cycles(
 ) -> LoadCycles:
     """Count the cycles of a quantity at one station from `start` to `end` [s], by rainflow counting.
 
-    Turning points are found at 32 times in each time step and then refined by the interpolation of the
-    transient, to 1e-6 of the largest range.
+    Turning points are sought at 32 times in each time step.  They are then refined by the interpolation of
+    the transient, so that the error of their values is 1e-6 of the largest range.
 
     Parameters
     ----------

@@ -24,8 +24,9 @@ _COMPARED = 4000  # largest number of times at which two simulations are compare
 _BATCH = 500  # number of times evaluated at once
 _REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and of grid points in each
 _OF_TURNING_POINTS = 2  # number of refinements of a turning point: values within 1e-6 of the largest range
-_BETWEEN_SAMPLES = 4  # times per sample of the run at which turning points are sought
-# Time before a segment's end, in its durations, at which loads are evaluated: at the end they may jump.
+_BETWEEN_SAMPLES = 4  # number of times for each sample of the run at which turning points are sought
+# Time before the end of a segment at which loads are evaluated, as a fraction of its duration: at the end
+# itself they may jump.
 _BEFORE_JUMP = 1e-9
 
 
@@ -50,7 +51,7 @@ class LoadPath(FieldsOnly):
 
     @property
     def outputs(self) -> StationOutputs:
-        """Outputs at each station as functions of the loads."""
+        """Outputs at each station, such as strains, as functions of the forces and moments there."""
         assert self.given is not None
         return self.given
 
@@ -82,7 +83,7 @@ class LoadPath(FieldsOnly):
     # Turning points and largest magnitudes --------------------------------------------------------
 
     def turning_values(self, station: int, output: int, start: float, end: float) -> np.ndarray:
-        """Find one output's values at its local extremes from start to end [s], and at both times."""
+        """Find the values of one output at its local extremes from start to end [s], and at start and end."""
         single = self.rows.chosen(np.array([station]), np.array([output]))
         samples, parts = self.run.path.samples[0], np.linspace(0, 1, _BETWEEN_SAMPLES, endpoint=False)
         between = (samples[:-1, None] + np.diff(samples)[:, None] * parts).ravel()
@@ -130,9 +131,9 @@ class LoadPath(FieldsOnly):
         last: np.ndarray,
         refinements: int,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Find where `size` of single outputs is largest near times t [s], between `first` and `last`.
+        """Find the times near t [s] at which the function `size` of each of the single outputs is largest.
 
-        Return the values of the outputs there, and the times [s].
+        The times are sought between `first` and `last`.  Return the values of the outputs, and the times [s].
         """
         found, half_width = np.empty(0), np.maximum(last - t, t - first)
         for _ in range(refinements):
@@ -206,7 +207,7 @@ def largest_per_coordinate(
     Each coordinate vibrates at its frequency [rad/s]; the bounds (S, K, n) sum the largest contributions
     of all quantities of the root's motion.
     """
-    # There are several samples in each time step, and time steps are short during a shock.
+    # Maxima over the samples suffice: each time step has several samples, and steps are short during a shock.
     root = system.root(path.samples[0])
     total = np.zeros((*rows.shape, system.size))
     for by_quantity, factor in ((rows.position, 1.0), (rows.velocity, frequencies)):

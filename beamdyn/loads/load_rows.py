@@ -7,11 +7,11 @@ work on it is
 
 with the loads f of the root's motion and gravity, and the forms m, g, k of mass, gyroscopic terms and
 geometric stiffness: the loads and the inertia of the part outboard, and the lever arms that the deflection
-gives to the centrifugal forces.  No curvature enters.  The accelerations follow from the equations of
-motion of the kept coordinates, so that R is the moment of the kept shapes and the static one of all others,
+gives to the centrifugal forces.  No curvature enters.  The accelerations follow from the equations of motion
+of the kept coordinates, so that R contains the moment of the kept shapes and the static moment of all others,
 as in the mode-acceleration method: Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section
-11.4.
-Modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) is a load on the beam in proportion to its mass.
+11.4.  Modal damping (C q' with C = M Phi 2 zeta Omega Phi^T M) is a load on the beam in proportion to its
+mass.
 """
 
 from __future__ import annotations
@@ -266,7 +266,7 @@ def _lacks_camber(scene: Scene) -> bool:
 def refuse_uncovered_camber(scene: Scene) -> None:
     """Refuse camber if loads along the span cannot be computed with it."""
     if scene.physics.camber and _lacks_camber(scene):
-        instead = 'it was chosen by "auto": give the physics without it'
+        instead = 'physics = "auto" has chosen it: give the physics without it'
         remedy = _LEAVE_OUT if scene.physics_choice is None else instead
         raise InvalidValue("physics.camber", True, _OF_TAPERED, remedy)
 

@@ -259,7 +259,9 @@ def test_a_process_that_dies_while_it_starts_fails_who_waits_for_it_and_nothing_
         asyncio.get_running_loop().set_exception_handler(lambda _, context: unheard.append(context))
         processes = Processes(die_at_start)
         async with asyncio.timeout(PATIENCE):
-            with pytest.raises(BrokenExecutor, match="no process can be started to compute it: it ended"):
+            with pytest.raises(
+                BrokenExecutor, match="no process can be started to compute the result: it ended"
+            ):
                 await submit(processes, sleep, 0.0)
         assert processes.ids == set()
         gc.collect()

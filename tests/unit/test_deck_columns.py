@@ -34,7 +34,7 @@ def test_columns_in_another_order_than_elastodyn_reads_are_warned_of(folder, fin
     in_order(folder / "sub" / "blade.dat", (0, 1, 2, 4, 3, 5))
     deck = bd.read_deck(folder / "main.dat")
     np.testing.assert_allclose(deck.scene.beam.bending_stiffness(0.0), written.FLAP[0])  # by their heads
-    assert "for BMassDen what is under FlpStff" in deck.audit.warnings[0]
+    assert "it takes the values under FlpStff as BMassDen" in deck.audit.warnings[0]
     err = finished(main(["import", str(folder / "main.dat")]), 0).err
     assert "expected BlFract, PitchAxis, StrcTwst, BMassDen, FlpStff, EdgStff" in err
 

@@ -196,7 +196,7 @@ def test_inputs_without_derivatives_are_named():
         ("0.19 mm to 0.21 mm", 'give "0.00019 to 0.00021"'),
         ("0.19 to 0.21 mm", 'give "0.00019 to 0.00021"'),
         ("+1.5e1 um, -2%", 'give "+1.5e-05, -2%"'),
-        ("+-2 ft", "give numbers alone, in m"),
+        ("+-2 ft", "give numbers without a unit, in m"),
     ],
 )
 def test_a_unit_in_python_is_refused_with_the_number_to_give(text, remedy):

@@ -11,7 +11,7 @@ from textwrap import shorten
 
 from beamdyn.common.screens.screens import Document, Program
 
-_LONGEST = 110  # most characters of an example's title
+_LONGEST = 110  # largest number of characters in the title of an example
 _SENTENCE = re.compile(r"\.\s+(?=[A-Z])")  # pattern of the end of a sentence
 _CLAUSE = re.compile(r"[;:,] ")
 
@@ -38,7 +38,8 @@ class Example:
     text: str
 
 
-_KNOWN: dict[str, tuple[Example, ...]] = {}  # stored, as checking takes a second
+# Examples that each program can open, by its name; they are stored, as checking the files takes a second.
+_KNOWN: dict[str, tuple[Example, ...]] = {}
 
 
 def examples_of(program: Program) -> tuple[Example, ...]:
@@ -67,7 +68,10 @@ def _accepted(program: Program) -> Iterator[Example]:
 
 
 def _title(text: str, name: str) -> str:
-    """Return the first sentence of the comment at the start of a file, shortened; without one, its name."""
+    """Return the first sentence of the comment at the start of a file, shortened if it is long.
+
+    Without such a comment, return the name of the file.
+    """
     lines = takewhile(lambda line: line.startswith("#"), text.splitlines())
     words = _SENTENCE.split(" ".join(line.lstrip("# ") for line in lines))[0]
     if len(words) > _LONGEST:

@@ -1,4 +1,4 @@
-"""The panel of a screen that finds the value of an input for which a result has a wanted value."""
+"""Panel of a screen: it finds the value of an input for which a result has a wanted value."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screens import Backwards, Screen
 from beamdyn.common.screens.sweep_panel import inputs_with_value
 
-_WITHIN = "from:to:samples unit; if empty, from a tenth to ten times its value"
+_WITHIN = "from:to:samples unit; if empty, from a tenth to ten times the value of the input"
 
 
 class FindPanel:
@@ -40,7 +40,7 @@ class FindPanel:
     def __init__(self, work: OpenDocument, screen: Screen, backwards: Backwards, solver: RunsTasks) -> None:
         self.work, self.screen, self.backwards, self._solver = work, screen, backwards, solver
         self._way = LatestComputation(self._settle, self._fail, self._tell)
-        self._asked: Entries | None = None  # the inputs for which the last question was asked
+        self._asked: Entries | None = None  # field texts for which the last search was started
         self._units: dict[str, str] = {}  # units of the available results
         self._fold: Any = ui.expansion("Find an input", on_value_change=self.state)
         with self._fold.classes("w-full section").props("dense"):

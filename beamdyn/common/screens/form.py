@@ -16,7 +16,8 @@ from beamdyn.common.screens.page_writer import PageWriter
 from beamdyn.common.screens.screen_parts import Drag, Preset
 from beamdyn.common.screens.screens import Screen
 
-# Least number of fields that are folded; tables with at most so many fields, all with defaults, are unfolded.
+# Smallest number of optional fields that are folded into "more".  A table without given values is unfolded
+# only if it has at most this number of fields, all with default values.
 _FEW = 3
 
 
@@ -59,7 +60,7 @@ class Form:
         self._inputs = {entry.path: entry for entry in inputs}
         self._units: dict[str, str] = {}  # units of numbers typed without a unit, by path of the input
         self._tables: dict[str, Any] = {}
-        self._places: dict[str, Any] = {}  # elements around the fields, by path of the input
+        self._places: dict[str, Any] = {}  # HTML elements that contain the fields, by path of the input
         self._rest: dict[str, Any] = {}  # foldable parts of tables, by path of the inputs in them
         self._drags = {drag.path: drag for drag in screen.drags}
         for section in screen.sections:
@@ -71,7 +72,11 @@ class Form:
     def _section(
         self, section: str, chosen: Sequence[Input], presets: Sequence[Preset], work: OpenDocument
     ) -> None:
-        """Make a table of the form: required, given and slider-driven fields first, the others folded."""
+        """Make the part of the form for one table of the file.
+
+        Fields that are required, have a text or have a slider come first; the others are folded if there are
+        several.
+        """
         entries, drags = work.entries, self._drags
         first = [e for e in chosen if e.required or e.path in drags or entries.get(e.path, "")]
         rest = [entry for entry in chosen if entry not in first]
@@ -100,7 +105,10 @@ class Form:
                 self._field(entry, entries.get(entry.path, ""))
 
     def _preset(self, preset: Preset) -> None:
-        """Make a list of presets, each of which fills in several fields; it shows the one that matches."""
+        """Make a selection list whose choices each fill in several fields, such as those of a material.
+
+        When the list is opened, it shows the choice that matches the texts of the fields.
+        """
 
         def fill(choice: str | None) -> None:
             for path, text in preset.choices.get(choice or "", {}).items():
@@ -139,7 +147,7 @@ class Form:
                 return None
 
         def write(at: float | None) -> None:
-            if at is not None and at != place():  # equal if the slider only follows the field
+            if at is not None and at != place():  # skip a slider that only follows the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         def hold(held: bool) -> None:

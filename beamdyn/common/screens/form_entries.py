@@ -56,7 +56,8 @@ def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
 def _lined(value: Any) -> str:
     """Return a value as TOML; a list of tables, or of rows of numbers, has one line per item.
 
-    A list of points stays on one line, since coordinates with units are texts.
+    A point such as ["26.9 mm", "4 mm"] counts as a list of texts, not of numbers; thus a list of points has
+    only one line.
     """
     rows = _is_list_of(list, value) and any(isinstance(cell, int | float) for cell in value[-1])
     if rows or _is_list_of(dict, value):
@@ -163,9 +164,10 @@ def toml_value(value: Any) -> str:
 def by_field(
     error: Exception, inputs: Sequence[Input], entries: Mapping[str, str] = MappingProxyType({})
 ) -> dict[str, list[str]]:
-    """Sort the sentences of an error message by the path of the field; "" for no single field.
+    """Return the sentences of an error message, by path of the field that each sentence is about.
 
-    A sentence about the value of a field quotes the field's text.
+    Sentences that are not about a single field are at the path "".  A sentence about the value of a field
+    quotes the field's text.
     """
     paths = [entry.path for entry in inputs]
     if not isinstance(error, ConfigError):
@@ -175,7 +177,7 @@ def by_field(
         return {path: [reason_of(error) if isinstance(error, ArithmeticError) else say(error)]}
     sentences: dict[str, list[str]] = {}
     for sentence, place in zip(error.mistakes, error.paths, strict=True):
-        # The path in the error may lead to a part of an input, such as one coordinate.
+        # The path in the error may be that of a part of an input, such as one coordinate of a point.
         around = [path for path in paths if f"{place}.".startswith(f"{path}.")]
         sentences.setdefault(max(around, key=len, default=""), []).append(sentence)
     return sentences

@@ -119,7 +119,7 @@ def draw_sheet(
     answer : object
         The result.
     progress : float
-        Position of the slider.
+        Position of the slider above the drawing, from 0 to `Screen.last`.
     view : Viewport, optional
         Viewport to keep, so that the picture does not shift while a handle moves.
     other : sequence of sequences of Drawing
@@ -136,7 +136,7 @@ def draw_sheet(
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
             marks = len(screen.slider.marks) if screen.slider is not None and view is None else 0
-            if marks:  # the first drawing reserves space for its shapes at all positions of the slider
+            if marks:  # the first drawing gets room for its shapes at all marks of the slider
                 corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
                 rows = _with_first(rows, room=np.vstack(corners))
             rows = with_ghost(rows, other, name) if other else rows
@@ -154,7 +154,7 @@ def draw_sheet(
 
 
 def _with_first(rows: Rows, **changes: Any) -> Rows:
-    """Return the rows with changed fields of their first drawing."""
+    """Return rows of drawings in which the first drawing has the given `changes` of its fields."""
     (first, *others), *more = rows
     return [[replace(first, **changes), *others], *more]
 
@@ -192,7 +192,7 @@ def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Se
     """Return the texts of the fields that a handle sets; unchanged parts of the old texts are kept."""
     known, texts = {entry.path: entry for entry in inputs}, {}
     for path, value in handle.moved(*target).items():
-        if path in known:  # an outdated drawing may have other inputs
+        if path in known:  # the handles of an outdated drawing may set inputs that no longer exist
             text, unit = entries.get(path, ""), known[path].quantity.unit
             if isinstance(value, tuple):
                 pairs = zip(value, _coordinates(text, known[path]), strict=True)
@@ -203,7 +203,10 @@ def _texts(handle: Handle, target: Place, entries: Mapping[str, str], inputs: Se
 
 
 def _coordinates(text: str, entry: Input) -> Sequence[str]:
-    """Return the texts of a point's coordinates: those in a text, the defaults if it is empty, else ""."""
+    """Return the texts of both coordinates of a point from the text of its field.
+
+    If the field is empty, return the default coordinates; if its text is not a point, return empty texts.
+    """
     if not text.strip() and isinstance(entry.default, tuple):
         return [f"{1e3 * value:.6g} mm" for value in entry.default]
     values = tables_of({"point": text}, ()).get("point")

@@ -1,4 +1,4 @@
-"""Editors for lists of named items: buttons add and remove items, selections connect them."""
+"""Editors for lists of named items: buttons add and remove items, selection lists refer to other items."""
 
 from __future__ import annotations
 
@@ -59,7 +59,10 @@ class ItemRow:
             self._bin.props("flat dense round size=sm")
 
     def _make_field(self, cell: Cell) -> None:
-        """Make the field of a value: a list of its options; if none, a text field read when it is left."""
+        """Make the field of a value: a selection list of its options, or a text field if it has no options.
+
+        A text field is read when the user leaves it.
+        """
 
         def text() -> str:
             return next(each.text for each in self._item.cells if each.key == cell.key)

@@ -87,7 +87,7 @@ class ListGroup:
 
 
 def gone_with(item: Item, before: Sequence[ListGroup], after: Sequence[ListGroup]) -> list[str]:
-    """Return the names of items that were removed with a removed item, because they refer to it."""
+    """Return the names of the other items that were removed because they refer to the removed `item`."""
 
     def names(groups: Sequence[ListGroup]) -> Counter[str]:
         return Counter(one.name for group in groups for one in group.items)

@@ -225,12 +225,16 @@ class OpenDocument:
         return toml_of({name: value for name, value in tables.items() if name not in self.document.beside})
 
     def file(self) -> str:
-        """Return the design as a TOML file; comments hold the options of the screens, for `open`."""
+        """Return the design as the text of a TOML file.
+
+        Options of the screens, which are not part of the design, are in comments, from which `open` restores
+        them.
+        """
         options = "".join(f"# {path} = {self.entries[path]}\n" for path in self.document.aside)
         return "\n".join(filter(None, (options, self.text())))
 
     def put(self, path: str, text: str) -> None:
-        """Change the text of one field; drop the texts of inputs that no longer exist."""
+        """Change the text of one field; drop the texts of inputs that this change removes from the form."""
         self._replace_entries(self.entries | {path: text})
 
     def _replace_entries(self, entries: Entries) -> None:
@@ -295,7 +299,10 @@ class OpenDocument:
         return ShownAnswer(answer, shown, notes, entries, headline, perf_counter() - start)
 
     def keep(self, screen: Screen, outcome: Outcome) -> bool:
-        """Store a new result, or else the errors beside the last result; return whether one is new."""
+        """Store the outcome of a computation: a result, or errors; return whether it is a result.
+
+        Errors are stored in addition to the last result, which remains.
+        """
         found = isinstance(outcome, ShownAnswer)
         if found:
             self.answered[screen.name] = outcome
@@ -303,8 +310,8 @@ class OpenDocument:
         return found
 
     def solve(self, screen: Screen) -> bool:
-        """Compute the result for the present field texts, and store it or the errors.
+        """Compute the result for the present field texts, and store the result or, if it fails, the errors.
 
-        Return whether there is a result.
+        Return whether the computation gave a result.
         """
         return self.keep(screen, self.attempt(screen))

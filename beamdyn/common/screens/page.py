@@ -1,6 +1,6 @@
 """The web page of an interactive program, one per client: screens, files, designs, undo and redo.
 
-Here are also its style and scripts, and its header bar.
+This module also contains the style and the scripts of the page, and its header bar.
 """
 
 from __future__ import annotations
@@ -380,7 +380,11 @@ class Page:
     # Restoring after a reload of the page, or a restart of the program ------------------------------
 
     def _remember(self, heard: Mapping[str, Mapping[str, str]] | None = None) -> None:
-        """Store the field texts and the name of the shown screen in this browser tab."""
+        """Store the field texts and the name of the shown screen in this browser tab.
+
+        `heard` has the texts as the user typed them, by name of the document and path of the input; if not
+        given, those of the shown screen are stored.
+        """
         if not self._recalled:
             return
         designs = {name: work.entries for name, work in self.works.items()}
@@ -417,7 +421,7 @@ class Page:
             design = LinkedDesign.of_fragment(fragment)
             work = self.works.get(design.document)
             if work is None:
-                raise ConfigError("the link", [f"{self.program.name} has no {design.document[:40]}"])
+                raise ConfigError("the link", [f"{self.program.name} cannot open {design.document[:40]}"])
             work.open(design.text, "the link")
         except ConfigError as error:
             return self._file.refuse(str(error))

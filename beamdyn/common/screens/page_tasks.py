@@ -1,4 +1,4 @@
-"""Tasks of a page that any process can run: results, sweeps, files, reports; causes of missing results."""
+"""Tasks of a page that any process can run (results, sweeps, files, reports); causes of missing results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 Swept = InputSweep | str  # a sweep, or the reason why there is none
 # Sweeps that are shown: name of the screen, title and result of each.
 Shown = Sequence[tuple[str, str, InputSweep]]
-# Most fields that a user changes by hand between two results; if more have changed, a file was opened.
+# Largest number of fields that a user is assumed to change by hand between two results; if more have changed,
+# a file was opened.
 _FEW = 3
 
 
@@ -64,7 +65,10 @@ def solve_for_drawing(
 def sweep(
     document: Document, screen: Screen, entries: form_entries.Entries, text: str, results: str
 ) -> Swept:
-    """Vary one of the inputs; return the results, or the reason why there are none."""
+    """Compute results over a varied input; return the sweep, or the reason why there is none.
+
+    `text` names the input and its values, `results` are the names of the results, separated by commas.
+    """
     work = _opened(document, entries)
     assert screen.sweeps is not None
     try:
@@ -86,7 +90,7 @@ def find(document: Document, screen: Screen, entries: form_entries.Entries, soug
 
 
 def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
-    """Return a foldable part of a result as HTML."""
+    """Return the foldable part `number` (an index of `Screen.more`) of a result as HTML."""
     return screen.more[number].on_page(answer)
 
 
@@ -126,7 +130,10 @@ def report(
     title: str,
     sweeps: Shown,
 ) -> str:
-    """Return the HTML report on a design, from its results `answered`, by name of the screen."""
+    """Return the HTML report on a design.
+
+    Its results `answered` are by name of the screen; `sweeps` are the sweeps to include.
+    """
     work = _opened(document, entries)
     work.answered = dict(answered)
     by_name = {screen.name: screen for screen in document.screens}
@@ -197,14 +204,14 @@ def outcome_of(future: asyncio.Future[Outcome], work: OpenDocument, screen: Scre
     result.
     """
     if future.cancelled():
-        return {"": ["Cancelled. The next change of an input is computed again."]}
+        return {"": ["Cancelled. The computation starts again when an input changes."]}
     error = future.exception()
     if error is None:
         return future.result()
     if not isinstance(error, TakesTooLong | BrokenExecutor):
         return {"": [f"There is no answer, for a reason that the program does not know: {error!r}"]}
     since = {
-        path: [f"since the last answer this has changed; it was {_before(work, screen, path)}"]
+        path: [f"this input has changed since the last answer; it was {_before(work, screen, path)}"]
         for path in changed(work, screen)
     }
     return {"": [f"Given up: {error}. {screen.effort}".rstrip()]} | since
@@ -231,7 +238,7 @@ def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
         return dict.fromkeys(since, mistakes[""]) | mistakes
     if not 0 < len(since) <= _FEW or not mistakes or {*since} & {*mistakes}:
         return mistakes
-    causes = {path: f"that comes from {path}, which was {_before(work, screen, path)}" for path in since}
+    causes = {path: f"the cause is the new {path}, which was {_before(work, screen, path)}" for path in since}
     sentences = [said for each in mistakes.values() for said in each]
     return {path: [f"{said}; {cause}: change either" for said in sentences] for path, cause in causes.items()}
 

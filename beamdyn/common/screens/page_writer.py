@@ -41,14 +41,15 @@ class PageWriter:
         Changes of text, content, style, classes, attributes and field texts are written; changes of other
         properties are not.
         """
-        elements = tuple(e for e in elements if "update" not in vars(e))  # without those of an outer context
+        # An element that already has such an `update` belongs to an outer context, which writes its changes.
+        elements = tuple(e for e in elements if "update" not in vars(e))
         if not elements or not self.is_ahead:
             yield
             return
         before = {element: _written(element) for element in elements}
         for element in elements:
             element.update = partial(self.tell_later, element)
-            element.run_method = _do_nothing  # otherwise a text field would request an update of the page
+            element.run_method = _do_nothing  # a text field would update the page by it
         try:
             yield
         finally:

@@ -110,7 +110,7 @@ def headline_of(work: OpenDocument, screen: Screen, answered: ShownAnswer) -> st
 
 
 class PicturePanel:
-    """A part of a result that another process makes; the old part is shown until the new one is ready.
+    """Part of the display of a result that another process makes; until it is ready, the old one is shown.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ class PicturePanel:
         self._fill()
 
     def put(self, answer: object, part: str) -> None:
-        """Show another result whose part of the page is given; cancel the part that is being made."""
+        """Show the given part, which was made for another result; cancel the part that is being made."""
         self.close()
         self._answer = answer
         self._write(part)

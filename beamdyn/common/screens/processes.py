@@ -144,7 +144,7 @@ class Processes:
         """Let all waiting tasks fail, as no process can be started."""
         while self._waiting:
             if not (place := self._waiting.popleft()).done():
-                place.set_exception(BrokenExecutor(f"no process can be started to compute it: {why}"))
+                place.set_exception(BrokenExecutor(f"no process can be started to compute the result: {why}"))
 
     async def _run(self, wanted: bytes) -> Any:
         worker = await self._idle_worker()
@@ -165,7 +165,7 @@ class Processes:
             if isinstance(error, TimeoutError):
                 raise TakesTooLong(f"it takes more than {self.longest:g} s") from None
             if isinstance(error, EOFError | OSError):
-                raise BrokenExecutor("the process that computed it has died: out of memory?") from None
+                raise BrokenExecutor("the process that computed the result died: out of memory?") from None
             raise
         finally:
             keep_one_idle.cancel()
@@ -178,7 +178,7 @@ class Processes:
         raise result
 
     async def _interrupt(self, worker: _Worker, asked: asyncio.Future[bytes]) -> None:
-        """Interrupt the task of a process, which is then free; terminate the process if the task goes on."""
+        """Interrupt the task of a process, and make the process free; terminate it if the task goes on."""
         try:
             async with asyncio.timeout(_HEEDS):
                 while not asked.done():
@@ -217,7 +217,7 @@ class Processes:
         try:
             return await place
         except asyncio.CancelledError:
-            # The task was cancelled at the moment at which it got this process.
+            # If the task was cancelled just when it got a process, the process is free for another task.
             if place.done() and not place.cancelled():
                 self._free(place.result())
             raise
@@ -277,7 +277,8 @@ class Share:
         try:
             await place
         except asyncio.CancelledError:
-            if not place.cancelled():  # the task was cancelled at the moment at which it was allowed to start
+            # If the task was cancelled just when it was allowed to start, another task may start.
+            if not place.cancelled():
                 self._leave()
             raise
         return await self._start(given)

@@ -134,8 +134,8 @@ class Handle:
     at : tuple of float
         Position of the point (x, y) [m].
     moved : callable
-        ``moved(x, y)`` returns the inputs for a new position [m], in SI units by path: a number, or a pair
-        for a point.
+        ``moved(x, y)`` returns the inputs that a new position of the point [m] sets: values by path of the
+        input, in SI units; a value is a number, or a pair of numbers if the input is a point.
     scale : float
         Length units of the drawing per metre: 1000 if it is drawn in mm.
     step : float

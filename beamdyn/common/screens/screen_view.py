@@ -44,11 +44,13 @@ from beamdyn.common.screens.screens import Screen
 from beamdyn.common.screens.sweep_panel import SweepPanel
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
-_NO_FILE = "No file is made: the present entries have no answer, or a preliminary one alone."
+_NO_FILE = "No file is made: the present inputs have no complete answer; the messages on the screen say why."
 _STALE = "Stale: for the entries before."
-_CHARTS_APART = 0.1  # time between charts beside a moving drawing, each of which takes 5 to 10 ms [s]
-_MUCH = 0.01  # computing time of tables and notes above which the drawing is shown before them [s]
-_DRAWN_FIRST = 0.03  # time after which charts follow a drawing that the slider moves: it is painted first [s]
+# Shortest time between two updates of the charts while the drawing moves [s]; an update takes 5 to 10 ms.
+_CHARTS_APART = 0.1
+_MUCH = 0.01  # computing time of tables and notes [s] above which the drawing is computed and shown first
+# Delay of the charts after a drawing that the slider moves, so that the browser paints the drawing first [s].
+_DRAWN_FIRST = 0.03
 
 
 class ScreenView:
@@ -80,7 +82,8 @@ class ScreenView:
         self._open_file = open_file
         self.narrow = False  # whether the page is narrow, so that drawings are made narrow, too
         self._drawn = False
-        self._drawn_of: object = None  # what drawing and charts show (see `_to_draw`); None while charts wait
+        # What drawing and charts show, as returned by `_to_draw`; None while the charts are not up to date.
+        self._drawn_of: object = None
         self._sentences: list[tuple[str, str]] = []  # sentences that are shown, with their CSS classes
         self._way = LatestComputation(self._settle, self._fail, self.state)
         self._holds = False  # whether the user holds a slider of the form
@@ -129,7 +132,7 @@ class ScreenView:
         self._good: Any = ui.element("div").classes("w-full shown")
         with self._good:
             with ui.column().classes("pictures gap-2"):
-                if screen.slider is not None:  # the drawing keeps its scale while the slider moves
+                if screen.slider is not None:  # `view` keeps the scale of the drawing while the slider moves
                     self._player = Player(screen.slider, self._writer, lambda: self._draw(self.board.view))
                 self._branch = BranchChoice(self._draw)
                 self.board = DraggableDrawing(f"{name}: drawing of the result", self._moved, self._writer)
@@ -190,14 +193,14 @@ class ScreenView:
 
     def _changed(self, path: str, text: str) -> None:
         if self.work.entries.get(path) == text:
-            return  # when a handle is moved, this text is stored already
+            return  # the text is stored already, if a handle was moved
         self.work.put(path, text)
         if not self._has_shape:
             self.rebuild()
         elif self._sketch is not None and path in self._choices:
             self._sketch.show(self.work.entries)
         self.form.hide(self.work.idle)
-        self._previews = self._drawn  # the picture appears sooner if the page is not rendered before
+        self._previews = self._drawn  # delays rendering of the page: the picture appears sooner
         self.solve(held=self._holds)
         if not self._holds:  # while a slider is held, texts are neither stored nor reported to other screens
             self._edited()
@@ -267,7 +270,7 @@ class ScreenView:
         self.state()
 
     def _draw_first(self, entries: Entries, held: bool) -> None:
-        """Compute what the drawing needs for field texts; cancel a picture of other texts.
+        """Compute what the drawing needs for the given field texts; cancel a picture that is being made.
 
         While the user drags, each picture that has been started is shown; while the user types, only the last
         one.
@@ -292,7 +295,7 @@ class ScreenView:
             panel.close()
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
-        """Show a result; or show why the newest field texts have none, and grey the old result."""
+        """Show a finished result; if it failed, show why, and grey the old result."""
         if self._left.is_deleted:
             return
         outcome, before = outcome_of(future, self.work, self.screen), self._answered
@@ -316,7 +319,7 @@ class ScreenView:
             return self.solve()
         self.state()
         if not self.dragged:
-            self._writer.synchronize()  # done here, as otherwise the page would be rendered twice
+            self._writer.synchronize()  # here, so that the page is rendered only once
             self._edited()
 
     def _fail(self, error: Exception) -> None:
@@ -349,7 +352,11 @@ class ScreenView:
             panel.state()
 
     def _show_sentences(self, mistakes: dict[str, list[str]]) -> None:
-        """Show errors and the result's warnings; those of form fields are visible only if the form is not."""
+        """Show the errors and the warnings of the result.
+
+        Errors of form fields have the CSS class at-field: they are visible only on a narrow page, where the
+        form, which shows them at its fields, is out of sight.
+        """
         answered, fields = self._answered, self.form.fields
         each = [(said, path in fields) for path, sentences in mistakes.items() for said in sentences]
         sentences = [(said, "mistake") for said, at_field in each if not at_field]
@@ -392,7 +399,7 @@ class ScreenView:
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
             toggle(self._tables, "waits", not answered.is_whole)
-            self.state()  # done here, since all direct changes of the page must be reported together
+            self.state()  # inside this context, so that its changes are reported together with the others
         if self._drawn_of != self._to_draw(answered):
             self._draw()
         if answered.picture:
@@ -451,7 +458,11 @@ class ScreenView:
         self._charts.show(charts)
 
     def _to_draw(self, answered: ShownAnswer) -> object:
-        """Return what determines the drawing: field texts, accuracy, the other design if it is computed."""
+        """Return what determines the drawing, in order to find out whether it must be drawn again.
+
+        This is a tuple of the field texts, whether the result is preliminary, and the other design if that is
+        computed.
+        """
         return answered.entries, answered.is_rough, self.work.other_answer(self.screen) and self.work.other
 
     def _drawn_answer(self, answered: ShownAnswer) -> Any:
@@ -474,7 +485,10 @@ class ScreenView:
                 self._edited()
 
     async def _answer_for_file(self) -> ShownAnswer | None:
-        """Wait for an up-to-date result and return it; notify and return None if it is only preliminary."""
+        """Wait for an up-to-date result and return it.
+
+        If it is only preliminary, or there is none, notify the user and return None.
+        """
         await self.settled()
         answered = self._answered
         if answered is None or answered.is_rough:
@@ -483,7 +497,7 @@ class ScreenView:
         return answered
 
     async def _open_following(self) -> None:
-        """Make a file from the result, once that is up to date, and open the file."""
+        """Wait until the result is up to date, make a file of another kind from it, and open that file."""
         if self.screen.follows is not None and (answered := await self._answer_for_file()):
             self._open_file(self.screen.follows.text(answered.answer), self.screen.name)
 

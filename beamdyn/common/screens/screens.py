@@ -290,7 +290,7 @@ class Document:
 
     @property
     def beside(self) -> set[str]:
-        """Return the tables with inputs that are not part of the file."""
+        """Return the names of the tables whose inputs are not part of the file (see `aside`)."""
         return {path.partition(".")[0] for path in self.aside}
 
     @cached_property

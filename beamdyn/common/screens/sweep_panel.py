@@ -64,7 +64,8 @@ def sweep_charts(swept: InputSweep) -> list[Chart]:
     return charts
 
 
-# Suggested number of values of a sweep, and their range as a fraction of the present value.
+# Suggested number of values of a sweep, and the largest distance of these values from the present value, as a
+# fraction of it.
 _COUNT, _AROUND = 21, 0.2
 
 
@@ -150,7 +151,10 @@ class SweepPanel:
 
     @property
     def _range(self) -> str:
-        """Return the fields as "start:stop:count unit"; a limit without a unit has the other limit's."""
+        """Return the texts of the fields as "start:stop:count unit".
+
+        If a limit has no unit, it is assumed to have the unit of the other limit.
+        """
         (low, _, unit), (high, _, other) = (
             (f.value or "").strip().partition(" ") for f in (self._low, self._high)
         )
@@ -240,7 +244,7 @@ def around(entry: Input, entries: Mapping[str, str]) -> str:
 def _given(entry: Input, entries: Mapping[str, str]) -> tuple[float, str]:
     """Return number and unit of the text in an input's field, or of the input's default."""
     text, default, unit = entries.get(entry.path, ""), entry.default, entry.quantity.unit
-    if isinstance(entry, Coordinate):  # for a coordinate: its part of the point's text, and of the default
+    if isinstance(entry, Coordinate):  # a coordinate is one of the two values of a point
         whole: Any = entry.of.default or (0.0, 0.0)
         default = whole[entry.place]
         try:

@@ -45,7 +45,10 @@ class Slopes:
     exact: np.ndarray
 
     def replaced(self, rows: Mapping[int, tuple[np.ndarray, np.ndarray]]) -> Slopes:
-        """Return a copy in which some rows are replaced by exact derivatives, if these are finite."""
+        """Return a copy with exact derivatives, where these are finite.
+
+        `rows` has, by index of the input, the exact derivatives of all results and their errors.
+        """
         value, error, exact = self.value.copy(), self.error.copy(), self.exact.copy()
         for row, (slope, wrong) in rows.items():
             known = np.isfinite(slope)
@@ -88,14 +91,21 @@ def slopes_from(
 
 
 def _slope_weights(steps: np.ndarray) -> np.ndarray:
-    """Compute weights of changes at given steps, whose weighted sum is a polynomial's slope at 0."""
+    """Compute the weights of values at given steps whose weighted sum is the slope of a polynomial at 0.
+
+    The polynomial passes through these values, and is 0 at 0.
+    """
     size = np.abs(steps).max()
     powers = (steps / size)[None, :] ** np.arange(1, len(steps) + 1)[:, None]
     return np.linalg.solve(powers, np.eye(len(steps))[0]) / size
 
 
 def _parabola_weights(steps: np.ndarray) -> np.ndarray:
-    """Compute weights for the slope at 0 of a parabola through 0, the last step and an earlier step."""
+    """Compute weights of values at four steps whose weighted sum is the slope of a parabola at 0.
+
+    The parabola is 0 at 0, and passes through two of the values: that at the last step, and that at the first
+    step if this has the opposite sign, else at the second.  The other weights are 0.
+    """
     used = [0, 3] if steps[0] * steps[3] < 0 else [1, 3]
     weights = np.zeros(len(steps))
     weights[used] = _slope_weights(steps[used])
@@ -117,7 +127,8 @@ class FirstOrderRange:
     mean, deviation : ndarray, shape (k,)
         Mean and standard deviation [units of the results].
     error : ndarray, shape (k,)
-        Largest effect of errors of the derivatives on the four numbers above [units of the results].
+        Largest effect of errors of the derivatives on `smallest`, `largest`, `mean` and `deviation` [units of
+        the results].
     share : ndarray, shape (d, k)
         Contribution of each input to the variance, as a fraction.
     slope, slope_error : ndarray, shape (d, k)

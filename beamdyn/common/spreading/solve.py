@@ -57,7 +57,7 @@ class SpreadAnswers:
 
     @property
     def absolute_error(self) -> np.ndarray:
-        """Return the absolute errors of designs (rows); nan if unknown."""
+        """Return the absolute errors of the results, shape (N, k); nan if unknown."""
         with np.errstate(invalid="ignore"):
             size = np.abs(self.value) * self.error
         size = np.where(np.isinf(self.error), np.inf, size)  # inf * 0 is nan, but the error is inf
@@ -65,11 +65,12 @@ class SpreadAnswers:
 
     @property
     def size_of_error(self) -> np.ndarray:
-        """Return the absolute errors of designs (rows); 0 if unknown."""
+        """Return the absolute errors of the results, shape (N, k); 0 if unknown."""
         return np.nan_to_num(self.absolute_error, nan=0.0, posinf=np.inf)
 
 
-# A function that computes results from the inputs, (N,) by name, of N designs; raises ValueError if all fail.
+# A function that computes the results of N designs from their inputs, arrays (N,) by name of the input; it
+# raises ValueError if all designs fail.
 Evaluate = Callable[[dict[str, np.ndarray]], SpreadAnswers]
 Derivatives = Callable[[], KnownDerivatives]
 
@@ -151,19 +152,22 @@ class _FurtherAnswers:
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # whether each result exists for any earlier design; only then its absence is reported
+    wanted: Any  # whether any earlier design has each result; else its absence is not reported
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)
 
     def __call__(self, designs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return results of designs (rows), and their absolute errors."""
+        """Return the results (n, k) of n designs (n, d), and their absolute errors (n, k)."""
         self._count += len(designs)
         value, error = zip(*self._parts(designs), strict=True)
         return np.concatenate(value), np.concatenate(error)
 
     def _parts(self, designs: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-        """Yield results of all designs; if a design is invalid, split the designs into halves to find it."""
+        """Yield the results of all designs and their absolute errors, in parts.
+
+        If a design is invalid, the designs are split into halves in order to find it.
+        """
         try:
             found = self.evaluate(_columns(self.inputs, designs))
         except ValueError as error:
@@ -238,7 +242,7 @@ def _notes(spread: Spread, error: np.ndarray) -> Iterator[str]:
             )
             yield f"{name}: {why}, so that its worst cases come from {ended}: there may be worse"
         if spread.scatter.deviation[k] <= error[k]:
-            yield f"{name}: it scatters by no more than its numerical error, {error[k]:.1g}: no indices"
+            yield f"{name}: it scatters by at most its numerical error, {error[k]:.1g}: no Sobol' indices"
 
 
 def _without_answer(spread: Spread) -> Iterator[str]:
@@ -249,7 +253,7 @@ def _without_answer(spread: Spread) -> Iterator[str]:
         if share == 1:
             said.setdefault(f"no random design has an answer ({why})", []).append(name)
         elif share:
-            rest = "the statistics are of the others, and there are no indices"
+            rest = "the statistics are of the other designs, and there are no Sobol' indices"
             sentence = f"{percent(share)} of the random designs have no answer ({why}); {rest}"
             said.setdefault(sentence, []).append(name)
     for sentence, names in said.items():

@@ -155,7 +155,7 @@ class Spread(Result):
 
 
 def _digits_of(low: float, high: float) -> int:
-    """Return the number of digits that distinguish both ends of a range, to some percent of the range."""
+    """Return the number of digits that shows both ends of a range to some percent of its width."""
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = 2 + np.log10(np.divide(max(abs(low), abs(high)), high - low))
     return int(np.clip(needed, _DIGITS, _MOST_DIGITS)) if np.isfinite(needed) else _DIGITS
@@ -166,7 +166,8 @@ def _digits_of(low: float, high: float) -> int:
 
 _BINS = 24
 _MOST_PANELS = 4  # largest number of results that a figure shows
-# Distance of a histogram's limits from the 5 % and 95 % percentiles, divided by the distance of these two.
+# Distance of the limits of a histogram from the 5 % and 95 % percentiles, divided by the distance between the
+# percentiles.
 _REACH = 1.0
 
 

@@ -31,9 +31,9 @@ if TYPE_CHECKING:
     from scipy.stats.qmc import QMCEngine
 
 BLOCKS = 16
-LEAST, MOST = 128, 2**17  # allowed numbers of samples: fewer give blocks too small for errors
+LEAST, MOST = 128, 2**17  # allowed numbers of samples: with fewer, blocks are too small to estimate errors
 MOST_SEED = 2**63
-# Large enough for negligible rounding errors, and small enough for nearly linear results.
+# The step is so large that rounding errors are negligible, and so small that results are nearly linear.
 _STEP = 1 / 8  # largest step for derivatives, as a fraction of the distance to an end of the tolerance
 _ONE_SIDED, _BOTH_SIDES = np.array([0.25, 0.5, 0.75, 1.0]), np.array([-1.0, -0.5, 0.5, 1.0])
 
@@ -47,7 +47,10 @@ def check_samples(samples: object) -> tuple[int, list[str]]:
 
 
 def count_designs(inputs: int, samples: int) -> int:
-    """Compute the number of designs that a spread of a number of inputs evaluates to begin with."""
+    """Compute the number of designs that a spread evaluates before it searches for worst cases.
+
+    `inputs` is the number of inputs, `samples` the number of designs in each random sample.
+    """
     return 1 + 4 * inputs + (2 + inputs) * samples
 
 
@@ -149,7 +152,7 @@ def _sobol_points(columns: int, rows: int, seed: np.random.SeedSequence) -> np.n
     from scipy.stats import qmc  # imported here, because the import takes long
 
     if columns > qmc.Sobol.MAXDIM:
-        raise InvalidValue("spread", columns // 2, f"give at most {qmc.Sobol.MAXDIM // 2} inputs a spread")
+        raise InvalidValue("spread", columns // 2, f"give at most {qmc.Sobol.MAXDIM // 2} inputs to a spread")
     return np.clip(seeded(qmc.Sobol, columns, seed).random(rows), 2.0**-40, 1 - 2.0**-40)
 
 
@@ -169,7 +172,7 @@ _ROUNDING = 1e-12  # relative scatter of results below which they count as equal
 
 @dataclass(frozen=True)
 class Scatter:
-    """Scatter of k results over the random designs that have them.
+    """Statistics of each of k results over those random designs that have this result.
 
     Parameters
     ----------
@@ -220,7 +223,7 @@ def scatter_of(random: np.ndarray) -> Scatter:
 
 
 def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
-    """Compute the fields of `Scatter` for one result, from its values in `BLOCKS` rows."""
+    """Compute the fields of `Scatter` for one result, from its values: one row for each block of samples."""
     known = np.isfinite(values)
     none, none_error = mean_of_blocks(~known, np.ones(values.shape))
     if not known.any():
@@ -238,7 +241,10 @@ def _scatter_of_one(values: np.ndarray) -> tuple[np.ndarray | float, ...]:
 
 
 def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
-    """Compute the weighted mean of values in `BLOCKS` rows, and its standard error from their scatter."""
+    """Compute the weighted mean of values, and its standard error.
+
+    The values have a row for each block of samples; the error follows from the scatter of the blocks' means.
+    """
     total = weights.sum()
     mean = float((weights * values).sum() / total)
     parts = (weights * (values - mean)).sum(axis=1) * (len(values) / total)
@@ -248,8 +254,8 @@ def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, floa
 def _percentile(values: np.ndarray, known: np.ndarray, share: float) -> tuple[float, float]:
     """Compute a percentile (the result below which a given fraction lies), and its standard error.
 
-    The fraction of results below the percentile varies from block to block.  The error is the difference of
-    the results at fractions that differ by this variation, and by half a sample.
+    The error is the change of the percentile if the fraction is changed by its own standard error, which
+    follows from the scatter between blocks, combined with half a sample.
     """
     ordered = values[known]
     found = float(np.quantile(ordered, share))

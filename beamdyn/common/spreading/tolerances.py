@@ -272,9 +272,12 @@ def _as_text(given: Distribution, unit: str) -> str:
 
 
 def without_unit(text: str, written: str, unit: str) -> str:
-    """Return the advice for a tolerance `text` with the unit `written`: its numbers converted to `unit`."""
+    """Return advice for a tolerance `text` whose numbers must not have a unit, but have the unit `written`.
+
+    If `written` is `unit` with a prefix, the advice is the text with its numbers converted to `unit`.
+    """
     factor = _PREFIXES.get(written.removesuffix(unit)) if unit and written.endswith(unit) else None
     if factor is None:
-        return f"give numbers alone{f', in {unit}' if unit else ''}"
+        return f"give numbers without a unit{f', in {unit}' if unit else ''}"
     pattern = rf"((?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)(?:\s*{re.escape(written)}(?!\w)|(?![\d.]|\s*%))"
     return f'give "{re.sub(pattern, lambda found: f"{float(found[1]) * factor:g}", text)}"'

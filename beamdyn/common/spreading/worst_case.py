@@ -203,21 +203,23 @@ def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
 
 
 def _is_beaten(corner: _Case, best: _Case) -> bool:
-    """Return whether a random design exceeds the best corner by more than the errors of both."""
+    """Return whether the best known design exceeds the best corner by more than the errors of both."""
     near = sum(0.0 if np.isnan(each.error) else each.error for each in (corner, best))
     near = near + ROUNDING * np.abs(best.value)
     return bool(np.isfinite(best.value) and not np.abs(best.value - corner.value) <= near)
 
 
 def _widened(corner: _Case, best: _Case) -> _Case:
-    """Increase the error of the best corner by the amount by which random designs exceed it."""
+    """Increase the error of the best corner by the amount by which the best known design exceeds it."""
     return corner._replace(error=corner.error + np.abs(best.value - corner.value))
 
 
 def _search(
     start: _Case, rows: np.ndarray, ends: tuple[np.ndarray, np.ndarray], answer: Answer, most: int
 ) -> tuple[_Case, np.ndarray, int]:
-    """Search S better designs (S, d) at once; row 2 i minimizes result i, row 2 i + 1 maximizes it.
+    """Improve S designs (S, d) by as many searches at once.
+
+    A search with the number 2 i in `rows` (S,) minimizes result i, one with 2 i + 1 maximizes it.
 
     Returns
     -------

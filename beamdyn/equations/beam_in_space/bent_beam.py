@@ -101,7 +101,7 @@ class BeamInSpace(FieldsOnly):
 
     @cached_property
     def flat_functions(self) -> np.ndarray:
-        """Strains per unit of each coordinate, flattened over components and Gauss points: one row each."""
+        """Strains per unit of each coordinate (row), flattened over components and Gauss points."""
         return self.functions.reshape(self.size, -1)
 
     def strained(self, q: np.ndarray) -> np.ndarray:
@@ -133,7 +133,7 @@ class BeamInSpace(FieldsOnly):
         return bool(self.fibres.any() and self.functions[:, 3].any())
 
     def reduced(self, basis: np.ndarray) -> BeamInSpace:
-        """Transform the beam to other coordinates, q = basis @ q_reduced; the basis has a column for each."""
+        """Transform the beam to other coordinates, q = basis @ q_reduced (a column for each new one)."""
         given = {name: getattr(self, name) for name in ("functions", "hinges", "slopes")}
         rows = {k: np.tensordot(basis.T, values, 1) for k, values in given.items() if values is not None}
         K, C = (basis.T @ matrix @ basis for matrix in (self.stiffness, self.damping))
@@ -304,12 +304,15 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def _strained(self) -> tuple[np.ndarray, np.ndarray]:
-        """Changes of stretch and shears, and of curvatures, by unit coordinates, in space-fixed axes."""
+        """Changes of stretch and shears, and of twist rate and curvatures, per unit of each coordinate.
+
+        Both arrays have the shape (n, 3, points), with components in space-fixed axes.
+        """
         return self.strain_rates(np.eye(self.beam.size))
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotation vectors of the sections by unit coordinates, in space-fixed axes."""
+        """Rotation vectors (n, 3, sections) of sections per unit of each coordinate, in space-fixed axes."""
         return self.turning_rate(np.eye(self.beam.size), self._strained[1])
 
     @cached_property
@@ -320,7 +323,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def motions(self) -> np.ndarray:
-        """Displacements and rotations of all stations by unit coordinates: (coordinates, 6, stations)."""
+        """Displacements and rotations of all stations per unit of each coordinate: (n, 6, stations)."""
         stations = self.beam.stations
         motions = np.zeros((self.beam.size, 6, stations.count))
         motions[:, :3] = stations.to_all(self.displacement_rates)
@@ -329,13 +332,13 @@ class BentBeam(FieldsOnly):
 
     @property
     def tip_motions(self) -> np.ndarray:
-        """Displacements of the tip by unit coordinates: (coordinates, 3)."""
+        """Displacements of the tip per unit of each coordinate: (n, 3)."""
         return self.motions[:, :3, self.beam.stations.sections - 1]
 
     # Virtual work of forces at the stations -----------------------------------------------------------
 
     def under(self, forces: StationForces) -> Work:
-        """Compute virtual work of forces at the stations and its derivatives with respect to coordinates."""
+        """Compute the virtual work of forces at the stations, and its derivatives by the coordinates."""
         resultants = self._resultants(forces.force)
         change = self._change_by(*resultants) + self._of_stations(forces.tangent)
         return Work(self._work_of(*resultants), change)
@@ -356,7 +359,10 @@ class BentBeam(FieldsOnly):
         return n, stations.from_sections(moments), moments.sum(axis=-1)
 
     def _work_of(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Compute the virtual work per coordinate of what `_resultants` returns: n, m, and root moment."""
+        """Compute the virtual work of resultant forces and moments per unit of each coordinate: (..., n).
+
+        `n`, `m` and the moment at the root are what `_resultants` returns.
+        """
         beam, functions, back = self.beam, self.beam.flat_functions, self._within.swapaxes(-3, -2)
         stress = turn(back, m)
         if beam.shears:
@@ -415,7 +421,7 @@ class BentInPlane(BentBeam):
 
     @cached_property
     def _turned(self) -> np.ndarray:
-        """Rotation vectors of the sections by unit coordinates, in space-fixed axes."""
+        """Rotation vectors (n, 3, sections) of sections per unit of each coordinate, in space-fixed axes."""
         return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:

@@ -32,7 +32,7 @@ def skew(a: np.ndarray) -> np.ndarray:
 _PRODUCT = np.zeros((4, 4, 4))  # multiplication table of quaternions: two factors, then the product
 _PRODUCT[0] = _PRODUCT[:, 0] = np.eye(4)
 _PRODUCT[1:, 1:, 0], _PRODUCT[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
-_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # matrices of y -> y (0, a), per component of a
+_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # matrices of y -> y (0, a), per entry of a
 # Matrix entries of the rotation a -> y (0, a) y*, per product of two components of the quaternion y.
 _TURNING = np.einsum("ajc,b,cbi->abij", _PRODUCT[:, 1:], CONJUGATE, _PRODUCT[..., 1:]).reshape(16, 9)
 
@@ -55,7 +55,7 @@ def turn_law(R: np.ndarray, law: np.ndarray) -> np.ndarray:
 
 
 def integrate_curvature(cells: Cells, curvature: np.ndarray, kinks: np.ndarray) -> np.ndarray:
-    """Integrate a curvature to rotations from the root to the Gauss points of cells and to the tip.
+    """Integrate the curvature of a beam from the root: compute rotations at Gauss points and at the tip.
 
     The unit quaternion of R' = R skew(curvature) satisfies a linear equation, y' = y (0, curvature)/2, which
     Gauss collocation solves with an error that falls exponentially with the number of points on a cell.  The

@@ -278,7 +278,7 @@ class RotatingBeam(FieldsOnly):
         return basis
 
     def nearest(self, other: RotatingBeam, q: np.ndarray) -> np.ndarray:
-        """Find coordinates whose strains are nearest to those of another discretization's beam at q."""
+        """Find coordinates whose strains are nearest to those of the beam `other` at its coordinates q."""
         own, rule = self.beam, self.beam.stations.quadrature
         between = other.beam.stations.quadrature.interpolate_to(rule.xi)
         strains = np.tensordot(q, other.beam.functions, 1) @ between.T * np.sqrt(rule.weights)
@@ -300,7 +300,7 @@ class RotatingBeam(FieldsOnly):
         return q @ self.beam.functions[:, -1] @ self.beam.stations.quadrature.interpolate_to(xi).T
 
     def tip_angle(self, q: np.ndarray) -> float:
-        """Compute the angle between the tip and the root's axis e1 [rad]; signed for bending in one plane."""
+        """Compute the angle between the tip section's axis and e1 [rad]; signed for bending in one plane."""
         if self.beam.is_planar:
             return float(q @ self.beam.angles[:, -1])
         along = self.beam.at(q).rotations[:, 0, -1]
@@ -335,10 +335,15 @@ class BentState(FieldsOnly):
 
     @cached_property
     def _known(self) -> dict[tuple[tuple[Quantity, float], ...], bent_beam.Work]:
-        return {}  # a cached function would keep the state and its arrays alive by referring to it
+        # A dictionary, since a function with a cache would refer to this state and so keep its arrays in
+        # memory.
+        return {}
 
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
-        """Compute forces at the stations: `values["unity"]` times the tip load if given, else of inertia."""
+        """Compute the forces at the stations for given quantities of root motion: the inertial forces.
+
+        If "unity" is given, return minus that fraction of the tip load instead.
+        """
         if "unity" in values:
             assert self.of.load is not None
             return self.of.load.on(self.bent, -values["unity"])
@@ -365,7 +370,10 @@ class BentState(FieldsOnly):
         return SteadyPencil(self.bent.mass, C, self.gyroscopic, K0, K2, -force, linear.shift, linear.planes)
 
     def linearized(self) -> Equations:
-        """Return the equations of small motions about this state, with minus its elastic force as a load."""
+        """Return the equations of small motions about this state.
+
+        Minus the elastic force of the state is one of the loads, so that they add up to 0 in equilibrium.
+        """
         linear = self.of.linear
         terms = [
             *terms_of_blocks(linear, "mass", self.bent.mass, 2),
@@ -389,12 +397,12 @@ class BentState(FieldsOnly):
         return replace(linear, deflections=deflections, shapes=shapes, coarse=None, **given)
 
     def _loads(self, name: str, vector: np.ndarray, quantity: Quantity) -> Iterator[Load]:
-        """Split a left-hand-side force into right-hand-side loads, one for each coordinate block."""
+        """Split a left-hand-side force into loads on the right-hand side, one for each coordinate block."""
         for row, i in self.of.linear.blocks.items():
             yield Load(name, row, vector[i], quantity, -1.0)
 
     def _deflection(self, place: slice, direction: int) -> Deflection:
-        """Build the deflection in a direction that one coordinate block causes, with its inertial loads."""
+        """Build the deflection in one direction due to one block of coordinates, with its inertial loads."""
         axis = np.array([-_AXES[2], _AXES[1]][direction])
         by_root = self.under({_ROOT[1 + direction]: 1.0}).work[place]
         by_turning = -self.bent.work(self.bent.masses.carried(axis, acceleration=1.0).force)[place]

@@ -41,7 +41,7 @@ class TipForces(NamedTuple):
         return force
 
     def on(self, bent: BentBeam, share: float = 1.0) -> StationForces:
-        """Return the load at the stations, multiplied by `share`, at one set of coordinates."""
+        """Return the load as forces at the stations of one deformed beam, multiplied by `share`."""
         force, tip = share * self.forces(bent), bent.beam.stations.sections - 1
         tangent = np.zeros((6, *force.shape))
         if self.follows:

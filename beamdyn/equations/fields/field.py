@@ -99,7 +99,10 @@ class SectionFunctions(Protocol):
 
     @property
     def corner(self) -> np.ndarray:
-        """Deflection of the tip's corner 2 y/width = 1 by unit coordinates; twist if no width is known."""
+        """Deflection of the tip's corner 2 y/width = 1 per unit of each coordinate.
+
+        If the width is unknown, it is the twist [rad].
+        """
         ...
 
     def evaluate(self, xi: np.ndarray, eta: np.ndarray) -> np.ndarray:

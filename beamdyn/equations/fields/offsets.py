@@ -152,7 +152,10 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Differentiate the mass centre's displacement by the two motions, both rotations: (3, 4) as `beside`."""
+    """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4).
+
+    Rows and columns are as in `SectionMotion.beside`.
+    """
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
@@ -182,12 +185,15 @@ def _moment(beam: Beam, component: int, power: int) -> Profile | None:
 
 @lru_cache(maxsize=64)
 def _pulled(beam: Beam) -> list[list[Profile | None]]:
-    """Compute both tensions of `axial_tension` times each offset of the tension centre [kg m, kg m2]."""
+    """Compute N_A and N_B of `axial_tension` times each offset of the tension centre [kg m, kg m2]."""
     return [[t and outboard * t for t in offset_components(beam)[_T:]] for outboard in axial_tension(beam)]
 
 
 class _CoupledMatrix(NamedTuple):
-    """Matrix in the equations of `rows`; those of `columns` contain its transpose times `mirrored`."""
+    """Matrix that couples two fields.
+
+    The equations of the field `rows` contain the matrix, those of `columns` its transpose times `mirrored`.
+    """
 
     rows: str
     columns: str
@@ -197,7 +203,10 @@ class _CoupledMatrix(NamedTuple):
     mirrored: float = 1.0
 
     def placed(self) -> Iterator[tuple[tuple[str, str, Quantity, int], np.ndarray]]:
-        """Yield the matrix and, unless `mirrored` is 0, its transpose times `mirrored`, with field names."""
+        """Yield the matrix and, unless `mirrored` is 0, its transpose times `mirrored`.
+
+        With each comes a key: field of the rows, field of the columns, quantity and order of the term.
+        """
         yield (self.rows, self.columns, self.quantity, self.order), self.matrix
         if self.mirrored:
             place = self.columns, self.rows, self.quantity, self.order
@@ -249,13 +258,16 @@ class Offsets:
 
     @cached_property
     def frame(self) -> tuple[np.ndarray, np.ndarray]:
-        """Matrices along b1, e1, e2: B of Coriolis and Euler acceleration, P of centrifugal acceleration."""
+        """Matrices B of Coriolis and Euler accelerations and P of centrifugal ones, in axes b1, e1, e2."""
         a = np.array([exact_cos_sin(self.scene.mount.precone)[1], *axis_in_section(self.scene)])
         return -np.cross(a, np.eye(3)).T, np.eye(3) - np.outer(a, a)
 
     @cached_property
     def accelerations(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """Accelerations of the axis by each quantity of root motion: a vector times x to the power 0 or 1."""
+        """Accelerations of the axis per unit of each quantity of root motion: quantity, vector and power.
+
+        The acceleration at x is the vector times x to this power, 0 or 1.
+        """
         (B, P), (along, first, second) = self.frame, np.eye(3)
         return [
             ("root_axial", along, 0),
@@ -267,7 +279,11 @@ class Offsets:
 
     @cached_property
     def _parametric(self) -> list[tuple[Quantity, np.ndarray, int]]:
-        """Accelerations of the axis that change the stiffness; only axial ones if there are no others."""
+        """Accelerations of the axis, as in `accelerations`, that change the stiffness.
+
+        In steady rotation without gravity, if the beam points inward or outward, only those along the beam
+        are returned, as the others are 0.
+        """
         scene = self.scene
         steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
         if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
@@ -314,7 +330,10 @@ class Offsets:
                 yield value, moment
 
     def _outboard(self, coefficients: np.ndarray, power: int) -> Profile | None:
-        """Integrate mass times x^power times a linear function of offsets beyond each section; None if 0."""
+        """Integrate mass times x^power times a linear function of offsets beyond each section; None if 0.
+
+        The four coefficients of this function multiply the offsets c1, c2, t1, t2.
+        """
         of_tip, length = self._of_tip(coefficients, power), self.scene.beam.length
         parts = [moment.scaled(value * length) for value, moment in self._of_sections(coefficients, power)]
         outboard = [part.outboard_integral() for part in parts] + [ONE.scaled(of_tip)] * bool(of_tip)
@@ -422,7 +441,10 @@ class Offsets:
                     yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
     def _tightened(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of axial forces on masses off the axis, by slopes of the beam."""
+        """Yield the stiffness matrices due to the axial force by the acceleration of masses beside the axis.
+
+        Like any axial force, this force does work on the slope of the beam.
+        """
         ahead = self._tip[0].offset
         parametric = [quantity for quantity, _, _ in self._parametric]
         for quantity, matrix in self._beside_axis:

@@ -22,7 +22,7 @@ from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
 _ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)  # orders of the derivatives along and across
-_ZERO = 1e-12  # averages over the width below this fraction of the largest are exactly 0 by symmetry
+_ZERO = 1e-12  # averages over the width below this fraction of the largest count as 0: they are 0 by symmetry
 
 
 class Derivative(NamedTuple):
@@ -202,9 +202,10 @@ class Strip:
         columns: tuple[WidthFunctions, str],
         across: np.ndarray | float = 1.0,
     ) -> np.ndarray:
-        """Integrate over x a weight times the mean over the width of two derivatives times `across`.
+        """Integrate over x a weight times the mean of a product over the width: a matrix.
 
-        Each derivative is named by the functions and a label such as "w_xx".
+        The product is that of two derivatives and `across`.  Each derivative is named by the functions and a
+        label such as "w_xx".
         """
         (first, a), (second, b) = rows, columns
         _, of_points = gauss_rule(self.points)
@@ -263,18 +264,18 @@ def _root(factor: Profile) -> Profile:
 
 @dataclass(frozen=True)
 class StackedSpace:
-    """Coordinates of a plate field: each function across the width, times all functions along the beam.
+    """Coordinates of a plate field: one for each product of a function across and a function along the strip.
 
     Parameters
     ----------
     along : Space
         Functions along the beam.
     numbers : tuple of int
-        Numbers k of the functions across.
+        Numbers k of the functions across the width.
     fewer : int
         Number of functions across in the coarser discretization.
     stretch : Profile
-        Ratio of the local width to the width by which y is scaled in the functions across.
+        Ratio of the local width to the width b in the argument 2 y/b of the functions across.
     """
 
     along: Space

@@ -212,7 +212,8 @@ def _term(name: str, matrix: np.ndarray, quantity: Quantity = "unity", factor: f
 
 # Plates ----------------------------------------------------------------------------------------------
 
-_HELD = CLAMPED._replace(stiffness="bending_stiffness", direction=0)  # boundary conditions, as for bending
+# Boundary conditions of torsion and camber of a strip at the root: clamped, as for bending.
+_HELD = CLAMPED._replace(stiffness="bending_stiffness", direction=0)
 _SOME_RATIO = 0.3  # Poisson's ratio in the list of all terms, if none is given
 
 _IS_TWISTED = Condition(lambda s: s.scene.modelled_beam.twist is not None, "the beam is not twisted")

@@ -163,7 +163,7 @@ class Pair:
         return Term(name, self.rows.field.name, self.columns.field.name, order, matrix, quantity, factor)
 
     def integrate(self, weight: Profile, *orders: int) -> np.ndarray:
-        """Integrate over x a weight times x-derivatives of both fields, of one order or one for each."""
+        """Integrate over x a weight times x-derivatives of both fields; give one common order, or two."""
         first, last = orders[0], orders[-1]
         length = self.rows.beam.length
         if self.rows is self.columns and first == last:

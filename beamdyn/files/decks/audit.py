@@ -118,7 +118,10 @@ def _one_plane(scene: Scene, plane: str) -> Scene:
 
 
 def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
-    """Return the tip body without offset across, its `inertia` about the axis of bending in a plane."""
+    """Return the tip body for bending in one plane.
+
+    It has no offset across, and its `inertia` is that about the axis of this bending.
+    """
     tip = tip and replace(tip, offset_across=0.0)
     if tip is None or plane == "flap":
         return tip
@@ -331,8 +334,8 @@ def _warnings(shapes: tuple[ShapeCheck, ...]) -> list[str]:
         if abs(shape.coefficient_sum - 1) > _SUM_ERROR
     ]
     return wrong_sums + [
-        f"the deck's shape of {shape.mode} is {shape.difference:.2g} of the tip deflection off that computed "
-        f"from its stations, at x/L = {shape.place:.3g}"
+        f"the deck's shape of {shape.mode} differs from the shape computed from its stations by "
+        f"{shape.difference:.2g} of the tip deflection, at x/L = {shape.place:.3g}"
         for shape in shapes
         if shape.difference > _SHAPE_ERROR
     ]

@@ -105,7 +105,7 @@ def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> 
         members.append(slice(start, start + number))
         start += number - 1
     if start + 1 != points:
-        said = f"the members have {start + 1} key points, kp_total in line {line} says {points}"
+        said = f"the members have {start + 1} key points, but kp_total in line {line} is {points}"
         raise text.refusal(line + count, f"{said}; neighbouring members share one")
     return members
 
@@ -157,7 +157,10 @@ def _arcs(spline: CubicSpline, at: np.ndarray) -> np.ndarray:
 
 
 def _places(x: np.ndarray, angles: Sequence[np.ndarray], stations: np.ndarray) -> np.ndarray:
-    """Choose stations x/L between which angles [deg] are nearly linear; kinks between members occur twice."""
+    """Choose stations x/L between which angles [deg] are nearly linear.
+
+    At a kink between two members there are two stations at one position.
+    """
     jumps = [np.abs(a[1:] - a[:-1]) > _ANGLE for a in angles]
     kinks = x[1:][(x[1:] == x[:-1]) & np.any(jumps, axis=0)]
     kept = np.sort(np.concatenate([np.union1d(stations, kinks), kinks]))
@@ -239,7 +242,10 @@ def _read_matrices(text: DataText, count: int) -> tuple[np.ndarray, list[int], l
 def _check_matrices(
     text: DataText, name: str, stations: np.ndarray, lines: Sequence[int], matrices: np.ndarray
 ) -> None:
-    """Refuse matrices not symmetric and positive definite, and masses that no rigid section has."""
+    """Raise an error for a matrix that is not symmetric and positive definite.
+
+    Also raise an error for a mass matrix that no rigid section has.
+    """
     ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
     checks = [
         (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
@@ -247,7 +253,7 @@ def _check_matrices(
     ]
     if name == "mass":
         wanted = (
-            "m on the diagonal, m times the centre beside it, and the sum of the others as inertia about z"
+            "mass m on the diagonal, m times its centre beside it, and inertia about z equal to Ixx + Iyy"
         )
         is_bad = (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS)
         checks += [(is_bad, wanted)]

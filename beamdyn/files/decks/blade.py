@@ -110,7 +110,7 @@ def _read_heads(text: DataText, line: int, known: Mapping[str, DeckColumn]) -> l
     heads = [known.get(plain_name(word), DeckColumn(word, "?")) for word in words]
     names = [column.name for column in heads]
     if twice := next((name for name in names if names.count(name) > 1), ""):
-        raise text.refusal(line, f"{twice} stands twice; expected each heading once")
+        raise text.refusal(line, f"{twice} stands twice; expected each column heading once")
     if missing := [c.name for c in known.values() if c.required and c.name not in names]:
         raise text.refusal(
             line, f"expected a column {missing[0]}; the headings are {', '.join(names)}{_rest(missing)}"

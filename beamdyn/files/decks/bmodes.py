@@ -64,7 +64,7 @@ _NEEDED = ("beam_type", "radius", "hub_rad", "precone", "bl_thp", "hub_conn", *_
 _NEEDED = (*_NEEDED, *(multiplier for _, multiplier in _PROPERTIES.values()))
 _MAIN_NAMES = {data_text.plain_name(name): name for name in _NEEDED}
 _OF_OFFSETS = tuple(data_text.plain_name(f"{name}_mult") for name in _OFFSETS)
-# Version 3 also has the axial offset, and another name for the speed than version 1.
+# Names that only some versions of BModes have: version 3 has an axial offset, and another name for the speed.
 _MAIN_MORE = ("cmaxial", "rotrpm", "rpmmult", "romg", "romgmult", *_OF_OFFSETS)
 
 
@@ -76,7 +76,7 @@ def read_main_file(text: data_text.DataText) -> Blade:
         name: data_text.named_number(text, named) for name, named in found.items() if name != "secpropsfile"
     }
 
-    # Raise an error for anything but a cantilevered blade.
+    # Raise an error about the value of `key` unless it is good: only cantilevered blades are read.
     def check(key: str, good: bool, wanted: str) -> None:
         data_text.check_named(text, found[key], good, wanted)
 

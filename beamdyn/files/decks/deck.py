@@ -108,11 +108,11 @@ class Deck(Result):
         head = [f"{self.title or 'A blade'}", f"Read from {names} ({self.kind})."]
         if self.ignored:
             head += ["", "Not in this scene:", *(f"  {entry.sentence()}" for entry in self.ignored)]
-        comments = {"": head, "beam": ["linear between stations; bending_stiffness is that of flap"]}
+        comments = {"": head, "beam": ["linear between stations; bending_stiffness is flapwise"]}
         if "second_bending_stiffness" in self.blade.columns:
-            comments["beam"][0] += ", the second that of edge"
+            comments["beam"][0] += ", second_bending_stiffness edgewise"
             comments["beam"] += ["twist is added to the bending angle: minus the twist towards feather"]
-        comments["mount"] = ["outward; flap bends out of the plane of rotation where twist and pitch are 0"]
+        comments["mount"] = ["outward; flap is out of the plane of rotation where twist and pitch are 0"]
         if self.blade.pitch:
             comments["mount"] += [f"pitched by {self.blade.pitch:g} deg towards feather"]
         if self.blade.matrices is not None:
@@ -123,7 +123,7 @@ class Deck(Result):
         elif self.scene.physics.torsion:
             comments["beam"] += ["offsets are from the shear centre, on the axis of the beam"]
         elif "rotary_inertia" in self.blade.columns:
-            comments["physics"] = ["rotary_inertia = true adds that of the sections"]
+            comments["physics"] = ["rotary_inertia = true adds the rotary inertia of the sections"]
         return text_of(self.tables, comments)
 
     def write_scene(self, path: str | PathLike[str], force: bool = False) -> None:
@@ -208,15 +208,15 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
             return read(text, *(needed[name] for name in wanted))
     if csv_table.is_csv(text):
         length, hub_radius = csv_table.needs_length(text), csv_table.needs_hub_radius(text)
-        remedy = "a column r [m], from the axis of rotation, has both"
+        remedy = "a column r [m], measured from the axis of rotation, gives both"
         needed = _needed(text, given, remedy, length, hub_radius)
         return csv_table.read_csv_blade(text, **needed)
     raise ConfigError(str(text.path), [f"it is none of the files that are read: expected {_KINDS}"])
 
 
 _BOTH = ("length", "hub_radius")
-# For each kind of file: reading function, names that identify it, where to find data that it lacks, and
-# which of length and hub radius it lacks.
+# For each kind of file: the function that reads it, names that identify it, where to find the data that it
+# lacks, and which of length and hub radius it lacks.
 _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
     (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
     (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),

@@ -173,9 +173,7 @@ def _doubt_order(heads: Sequence[str]) -> Iterator[str]:
     wanted = [_USED[0], *second, *_USED[1:]]
     if heads[: len(wanted)] != wanted:
         here = next(i for i, name in enumerate(wanted) if heads[i : i + 1] != [name])
-        said = (
-            f"ElastoDyn skips headings and reads by position, for {wanted[here]} what is under {heads[here]}"
-        )
+        said = f"ElastoDyn ignores headings: it takes the values under {heads[here]} as {wanted[here]}"
         yield f"the headings are {', '.join(heads)}: {said}; expected {', '.join(wanted)}, then any others"
 
 
@@ -192,7 +190,7 @@ def _properties(table: Stations, factors: Mapping[str, float]) -> dict[str, np.n
 def _ignored_settings(damping: np.ndarray, tuners: np.ndarray) -> tuple[IgnoredProperty, ...]:
     """Record damping, and stiffness tuners that are not 1, as ignored properties."""
     if np.ptp(damping) == 0:
-        reason = f"natural frequencies are undamped; damping_ratio = {damping[0]:.9g} in [model] has it"
+        reason = f"natural frequencies are undamped; damping_ratio = {damping[0]:.9g} in [model] includes it"
     else:
         reason = "natural frequencies are undamped; a scene has one damping ratio for all modes"
     ignored = ignore(", ".join(_DAMPING), 100 * damping, "%", reason)

@@ -22,9 +22,9 @@ def read_openfast_file(text: DataText) -> Blade:
         main = read_data(named_file(text, found["bdbldfile1"]))
         blade = beamdyn_blade.read_main_file(main, rotor.hub_radius)
         kept = {name: getattr(rotor, name) for name in ("pitch", "precone", "speed")}
-        mass = rotor.tip.get("mass", 0.0)  # left out by OpenFAST if BeamDyn computes the blades
+        mass = rotor.tip.get("mass", 0.0)  # OpenFAST ignores this mass if BeamDyn computes the blades
         ignored = (*blade.ignored, *ignore("TipMass(1)", mass, "kg", _NO_TIP_MASS))
         return replace(blade, sources=(text.path, rotor.sources[0], *blade.sources), ignored=ignored, **kept)
-    reason = "the turbine computes its blades by another module; this is the blade in ElastoDyn's files"
+    reason = "OpenFAST computes these blades by another module; this is the blade in ElastoDyn's files"
     ignored = (*ignore("CompElast", model if model != _ELASTODYN else 0.0, "", reason), *rotor.ignored)
     return replace(rotor, sources=(text.path, *rotor.sources), ignored=ignored)
