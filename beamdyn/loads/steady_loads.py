@@ -264,9 +264,13 @@ def lines_of_response(
 def _solve(
     response: SteadyResponse, equations: Equations
 ) -> tuple[list[periodic_system.Pair], np.ndarray, np.ndarray]:
-    """Solve for the coordinates, also at harmonics to which periodic coefficients couple the given ones.
+    """Solve for the coordinates at the harmonics of the response and at those coupled to them.
 
-    Lines of the tip that are within rounding error at all speeds are left out.
+    Periodic coefficients couple the harmonics of the response to further ones.  Harmonics that move the tip
+    by no more than rounding error at any speed are left out.
+
+    Returns the harmonics and the complex amplitudes (speeds, harmonics, coordinates), first with, then
+    without the further harmonics.
     """
     request = response.request
     vibration = vibration_of(request.model, request.basis, request.scene.motion, response.speeds)
@@ -294,7 +298,11 @@ def _expand(
     rates: np.ndarray,
     q: np.ndarray,
 ) -> np.ndarray:
-    """Compute complex amplitudes (C, S, K, U) of K outputs at C speeds and S stations, at U harmonics."""
+    """Compute complex amplitudes (C, S, K, U) of K outputs at C speeds and S stations, at U harmonics.
+
+    `union` lists the U harmonics, `pairs` those of the coordinates' amplitudes `q`, `spectra` has the
+    amplitudes of the root's motion, and `rates` the rates of both phases [rad/s].
+    """
     everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
     everywhere[:, [union.index(h) for h in pairs]] = q
     velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere

@@ -231,8 +231,8 @@ class FreeVibration:
     def warnings(self) -> list[str]:
         """List a warning if the second harmonic is close to a natural frequency, and so excites a mode."""
         values = np.abs(np.linalg.eigvals(np.linalg.solve(self._dynamic(0), self._dynamic(2))))
-        near = values.min() < _RESONANT * 3  # of the vibrating mode, the value is |1 - 2^2| = 3
-        return ["twice the frequency is near that of another mode: the two exchange energy"] if near else []
+        near = values.min() < _RESONANT * 3  # 3 = |1 - 2^2| is the value of the vibrating mode itself
+        return ["twice the frequency is near that of another mode: the modes exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:
         """Compute the dynamic stiffness matrix at a multiple of the frequency."""
@@ -251,7 +251,10 @@ class FreeVibration:
         return float(np.real(v.conj() @ _harmonic(odd, 1)) / np.real(v.conj() @ slope @ v))
 
     def _forces(self, harmonics: dict[int, np.ndarray]) -> np.ndarray:
-        """Compute the residual of the equations over one period (_SAMPLES, n), for given harmonics of q."""
+        """Compute the residual of the equations at samples over one period, for given harmonics of q.
+
+        The shape is (_SAMPLES, n), with n coordinates.
+        """
         phase = 2 * np.pi * np.arange(_SAMPLES) / _SAMPLES
         waves = {h: np.exp(1j * h * phase)[:, None] * x for h, x in harmonics.items()}
         q, rate, acceleration = (

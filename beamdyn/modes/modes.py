@@ -17,7 +17,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import count, real, within
 from beamdyn.common.plots.export import write_shapes
 from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
-from beamdyn.common.results.one_line import error_at_most, listed, states, warned
+from beamdyn.common.results.one_line import counted, error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement, announced
@@ -369,7 +369,7 @@ def warn_of_modes(
     unstable = growth_rate > 0
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
-        said = "unstable at ", Speeds(speeds[s]), f": {unstable[s].sum()} mode(s) grow; see growth_rate"
+        said = "unstable at ", Speeds(speeds[s]), f": growth_rate > 0 in {counted(unstable[s].sum(), 'mode')}"
         rate = {"quantity": "growth rate [1/s]", "value": growth_rate[s].max(), "limit": 0.0}
         yield Statement(*said, kind=GROWING, **rate)
     yield from warn_of_strain(strain.max(initial=0))

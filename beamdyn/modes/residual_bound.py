@@ -242,7 +242,10 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _residuals(self) -> tuple[np.ndarray, float]:
-        """Integrals of products of unbalanced moments, and a bound of the ratio of EI within a cell."""
+        """Integrals of products of unbalanced moments, and a bound of the ratio of EI within a cell.
+
+        The shape of the integrals is (forms, functions, forms, functions).
+        """
         assert self.flexibility is not None
         compliance = bound_on_cells(self.flexibility, self.part.ends)
         stiffness = bound_on_cells(self.scene.beam.bending_stiffness, self.part.ends)
@@ -381,7 +384,10 @@ class CoupledEnclosure(Enclosure):
         return self.unit * products**2 + variation * len(self.stiffness) * moments**2
 
     def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
-        """Derive the sizes of all seven forms from those of tension (2), mass, tip slope, and of twisting."""
+        """List a measure of each of the seven forms (a trace or a bound) in the order of the class.
+
+        `traces` has it for both tensions, the mass and the slope at the tip, `twisting` for the last form.
+        """
         return np.array([*traces[:3], traces[2], *(self._tensor_terms * traces[3]), twisting])
 
     def _sizes(self) -> np.ndarray:

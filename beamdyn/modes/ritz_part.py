@@ -36,9 +36,10 @@ from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile
 
-# Largest number of moments in each of two coupled directions: two seconds of computing time.
+# Largest number of functions (bending moments) in each of two coupled directions, which take two seconds.
 MOST_MOMENTS = 100
-# Number of segments up to which piecewise polynomials need fewer functions than moments over the beam.
+# Largest number of segments with which polynomials on each segment need fewer functions than bending moments
+# that are polynomials along the whole beam.
 _FEW_SEGMENTS = 6
 _SAMPLES = 32  # number of stiffness samples on a segment, used only for the choice of the basis
 _STEEP = 300.0  # ratio of two stiffness samples above which cells must be graded

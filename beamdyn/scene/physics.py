@@ -238,12 +238,12 @@ class PhysicsChoice:
     def warnings(self) -> Iterator[Statement]:
         """Yield a warning if the tolerance is not met, or if it is not known whether it is met."""
         large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
-        each = (Words(f"{e.name}, left out, is worth {_say_size(e.size)}: ", e.reason) for e in large)
+        each = (Words(f"the effect of {e.name}, left out, is {_say_size(e.size)}: ", e.reason) for e in large)
         if not self.is_met:
-            left_out = f"what is left out is worth {_say_size(self.model_error)}"
+            left_out = f"the effects left out amount to {_say_size(self.model_error)}"
             beyond = (
-                "what its theories leave out, most of it in short thick sections, and strain "
-                f"by rotation may change the answer by {_say_size(self.beyond_models)} more"
+                "errors of the theories included, largest for short thick beams, and strain by "
+                f"rotation may change the answer by {_say_size(self.beyond_models)} more"
             )
             named = Words(left_out, ": ", joined("; ", each)) if large else left_out
             parts = (named, self.model_error), (beyond, self.beyond_models)

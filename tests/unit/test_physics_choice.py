@@ -130,7 +130,7 @@ def test_what_the_beam_lacks_is_named_and_not_assumed() -> None:
     choice = choice_of(modes)
     assert choice.included == (ROTARY,)
     assert not choice.is_met
-    assert any("shear deformation, left out, is worth 1.5 %" in text for text in modes.warnings)
+    assert any("the effect of shear deformation, left out, is 1.5 %" in text for text in modes.warnings)
     bare = bd.Beam.from_stiffness(1.0, 1.0, 10.0)
     modes = bd.natural_modes(bd.Scene(bare, INWARD, physics="auto"), 0.1)
     assert choice_of(modes).not_known[SHEAR] == "give shear_stiffness"
@@ -380,7 +380,7 @@ def test_the_word_is_read_from_a_file() -> None:
 
 
 def test_other_words_are_refused() -> None:
-    with pytest.raises(InvalidValue, match='give "auto", or such as Physics'):
+    with pytest.raises(InvalidValue, match='give "auto", or a Physics such as Physics'):
         bd.Scene(STRIP, physics="all")  # pyright: ignore[reportArgumentType]
 
 

@@ -316,7 +316,11 @@ class Solver(Eigensolver):
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute gyroscopic modes of a beam on root springs, in a `basis` with unit stiffness matrix."""
+        """Compute gyroscopic modes of a beam on root springs, in a `basis` with unit stiffness matrix.
+
+        `condition` is the condition number of the scaled stiffness, on which rounding errors depend.  Returns
+        eigenvalues, vectors (in columns) and rounding errors.
+        """
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
         inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)), count)
@@ -327,7 +331,9 @@ class Solver(Eigensolver):
 
 
 class LeadingSolver(Solver):
-    """Eigensolver of the first coordinates of a solver, the others held at 0: by blocks of its factors.
+    """Eigensolver for the first coordinates of another solver, with the other coordinates fixed at 0.
+
+    It reuses the leading blocks of the other solver's factors.
 
     Parameters
     ----------

@@ -115,8 +115,8 @@ def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
     """Find coordinates (n,) of the stable equilibrium that is bent to the opposite side of the one from rest.
 
     A transverse acceleration of the root pushes the beam to the opposite side, and is then removed.  The side
-    of the equilibrium from rest follows from the root's acceleration or, without one, from the sign of
-    `natural`.
+    to which the equilibrium from rest bends follows from the root's transverse acceleration or, without one,
+    from the sign of `natural`, a load per squared speed.
 
     Raises
     ------

@@ -180,8 +180,8 @@ def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) 
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     bound = (stiffness / mass).min() + model.equations.shift
-    # Errors of squares below the lowest square at rest are relative to it.  It need not be computed if the
-    # largest relative distance is not that of a square below the bound.
+    # Errors of squares below the lowest square at rest are relative to it.  The lowest square
+    # need not be computed if the largest relative distance is not that of a square below its bound.
     if is_needed := size.min() < _ABOVE * bound:
         relative, below = half / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))

@@ -66,7 +66,7 @@ class Model(FieldsOnly):
 
     def over(self, spaces: Spaces | None = None) -> Equations:
         """Build the equations of motion of the straight beam, in given functions or the discretization's."""
-        if self.scene.chooses_physics:  # that "auto" suits a curved axis is checked only here
+        if self.scene.chooses_physics:  # `Scene` does not check physics "auto" for a curved axis
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
@@ -74,7 +74,7 @@ class Model(FieldsOnly):
 
     @cached_property
     def coupling(self) -> dict[str, np.ndarray]:
-        """Moment of the layers by a unit voltage, per function of each field: see `coupling_of`."""
+        """Work of the piezoelectric layers' moment under unit voltage, per function of each field."""
         return coupling_of(self.scene.beam, self.equations.deflections, self.equations.sections)
 
     @cached_property
@@ -335,7 +335,7 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
 
 
 def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Equations:
-    """Add the residual flexibility of the neglected modes, at a speed [rad/s], to the capacitance."""
+    """Add the residual flexibility of neglected modes, at a speed [rad/s], to a harvester's capacitance."""
     circuit, kept = equations.circuit, reduced.circuit
     assert circuit is not None and kept is not None
     stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]

@@ -41,7 +41,7 @@ ASSUMED_POISSONS_RATIO = 0.3
 # Poisson's ratio assumed for sections without one: for camber the largest of uniform materials, as the change
 # rises with the ratio; for torsion a usual one, by which the frequency is known to 13 %.
 _ASSUMED_OF_SECTIONS = {
-    effects.CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
+    effects.CAMBER: (0.5, "with Poisson's ratio 0.5, as none is given; 0 % with ratio 0"),
     effects.TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
 }
 MOST_CAMBER = "as if no section cambered, which is the most"
