@@ -125,13 +125,13 @@ def static_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, or large deflection is modelled.
     NoEquilibrium
-        An ArithmeticError: if rotation or its weight buckles the straight beam, or the beam turns freely
+        An ArithmeticError: if rotation or its own weight buckles the straight beam, or the beam turns freely
         about its root.
 
     References
     ----------
-    Equilibrium of the part beyond the cut (standard); modes left out are static: Craig and Kurdila (2006),
-    Fundamentals of Structural Dynamics, section 11.4.
+    Equilibrium of the part beyond the cut (standard); neglected modes respond statically: Craig and Kurdila
+    (2006), Fundamentals of Structural Dynamics, section 11.4.
 
     Examples
     --------
@@ -220,7 +220,7 @@ def _solve(
     if (lost := least <= _SINGULAR).any():
         raise NoEquilibrium(
             f"the straight beam has no stable equilibrium at {speeds[lost][0]:.6g} rad/s: rotation or its "
-            "weight buckles it at this or a lower speed, or it turns freely about its root"
+            "own weight buckles it at this or a lower speed, or it turns freely about its root"
         )
     q = np.linalg.solve(scaled, (equations.load(root) / size)[..., None])[..., 0] / size
     return rows.through(asked.outputs.matrix).at(root, q, np.zeros_like(q)), q @ equations.tips.T

@@ -137,8 +137,8 @@ def steady_loads(
 
     References
     ----------
-    As `static_loads`, with inertia (d'Alembert, standard); modes left out are static: Craig and Kurdila
-    (2006), Fundamentals of Structural Dynamics, section 11.4.
+    As `static_loads`, with inertia (d'Alembert, standard); neglected modes respond statically: Craig and
+    Kurdila (2006), Fundamentals of Structural Dynamics, section 11.4.
 
     Examples
     --------

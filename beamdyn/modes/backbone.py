@@ -179,8 +179,8 @@ def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[
 # Ratio of the tip amplitude to the length.  The frequency change is computed at half this amplitude, and the
 # error of the result from the difference to the change at the full amplitude.
 SMALL = 0.02
-# Ratio of the stated error to the difference of the two changes, because this difference may be a rounding
-# error.
+# Ratio of the stated error of the coefficient to the difference between its values at two amplitudes, because
+# this difference may be due to rounding.
 _OF_AMPLITUDE = 2.0
 _STEADY = 1e-3  # relative difference of the coefficients of two bases below which these converge steadily
 # Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.

@@ -235,9 +235,10 @@ def bound_critical_speed(scene: Scene) -> float:
     sizes = iter(_PROOF_SIZES)
 
     def finer(found: tuple[float, float]) -> tuple[float, float] | None:
-        """Enlarge the basis; return the squared speed below which stability is proved, and Ritz's value.
+        """Enlarge the basis, and prove stability up to a speed with it.
 
-        None if there is no larger basis to try.
+        Returns the squared speed below which stability is proved, and the squared critical speed by Ritz's
+        method; None if there is no larger basis to try.
         """
         if (total := next(sizes, None)) is None:
             return None

@@ -83,7 +83,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
         Static tip deflection under rotation [m], with its sign; its magnitude if two planes are modelled; nan
         above the critical speed.
     axial_strain : float
-        Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
+        Largest static axial strain, a measure of the error of a model without stretch; nan if it is unknown.
     warnings : tuple of str
         Warnings about the validity and accuracy of the result.
     provenance : Provenance

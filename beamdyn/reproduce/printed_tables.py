@@ -183,7 +183,8 @@ def nondimensional_scene(case: Mapping[str, Any]) -> bd.Scene:
     Returns
     -------
     Scene
-        Scene whose eigenvalues at gamma rad/s have the case's nondimensional frequencies as magnitudes.
+        Scene whose eigenvalues, at the case's nondimensional speed gamma in rad/s, have the nondimensional
+        frequencies as magnitudes.
     """
     delta, alpha = case["delta"], case.get("alpha")
     beam = bd.Beam.from_stiffness(
@@ -198,7 +199,7 @@ def nondimensional_scene(case: Mapping[str, Any]) -> bd.Scene:
 
 
 def twisted_scene(case: Mapping[str, Any]) -> bd.Scene:
-    """Build the scene of a case of ``twisted_beams.toml``; its speed is gamma rad/s."""
+    """Build the scene of a case of ``twisted_beams.toml``, whose speed in rad/s is the case's gamma."""
     names = ("second_bending_stiffness", "twist", "shear_stiffness", "rotary_inertia")
     given: dict[str, Any] = {name: Polynomial(case[name]) for name in names if name in case}
     beam = bd.Beam.from_stiffness(

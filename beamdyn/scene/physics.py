@@ -233,7 +233,7 @@ class PhysicsChoice:
         included = [_say_included(effect) for effect in self.effects if effect.included]
         several = len(included) > 1 and not math.isnan(self.time)
         cost = f"; in all {self.time:.2g} times the time of {self._plain}" if several else ""
-        return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or self._plain}{cost}'
+        return f'physics "auto", tolerance {self.tolerance:g}: {", ".join(included) or self._plain}{cost}'
 
     def warnings(self) -> Iterator[Statement]:
         """Yield a warning if the tolerance is not met, or if it is not known whether it is met."""

@@ -26,7 +26,8 @@ UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of
 _FORCES = 3  # number of rows of forces; the others are of moments
 LEAST = 1e-10  # smallest accepted eigenvalue of a positive definite matrix scaled to a diagonal of 1
 MOST_ASYMMETRY = 1e-4  # largest accepted asymmetry of a matrix scaled to a diagonal of 1
-# A row is reported if its component of the least eigenvalue's eigenvector is above this part of the largest.
+# Entries in the rows of a matrix are named as faulty if the components of these rows in the eigenvector of
+# the smallest eigenvalue exceed this fraction of the largest component.
 _PART = 0.1
 # Largest accepted difference of a mass matrix from that of a rigid section, over the root of the product of
 # the two diagonal entries in its row and column.

@@ -409,7 +409,7 @@ def test_commands_take_the_word_in_place_of_the_physics_of_the_file(
     file.write_text(TOML)
     assert main(["modes", str(file), "--speed", "100 rad/s", "--physics", "auto"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert 'physics "auto", for 0.001: large deflection (9.1 %;' in printed
+    assert 'physics "auto", tolerance 0.001: large deflection (9.1 %;' in printed
     assert main(["modes", str(file), "--physics", "all"]) == 2
 
 

@@ -281,7 +281,7 @@ def error_of_assumed_modes(
 
 
 def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
-    """Choose fractions of distances that count as error, and a limit for margins, as in `REGULAR`."""
+    """Choose the three numbers by which distances between bases count as errors: see `REGULAR`."""
     if not discretization.converges_regularly:
         return _IRREGULAR
     if scene.models_width:

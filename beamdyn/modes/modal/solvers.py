@@ -92,7 +92,7 @@ class UncoupledSolver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest of all blocks [rad2/s2], plus `pencil.shift`."""
+        """Lowest squared angular frequency at rest of all blocks plus the shift `pencil.shift` [rad2/s2]."""
         return min(solver.lowest_at_rest for solver in self.solvers)
 
     @property

@@ -29,7 +29,8 @@ class MotionSample:
     Parameters
     ----------
     angle, speed, acceleration : ndarray
-        Angle theta about -n3 [rad], speed omega = theta' [rad/s], acceleration omega' [rad/s2].
+        Angle theta about -n3 [rad], n3 being the axis of rotation; speed omega = theta' [rad/s]; acceleration
+        omega' [rad/s2].
     carrier_acceleration : ndarray, shape (..., 3)
         Acceleration of the centre of the carrier along the fixed directions n1, n2, n3 [m/s2].
 

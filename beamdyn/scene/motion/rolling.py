@@ -117,7 +117,8 @@ class RollingWheel(TurningMotion):
     speed : float or Rotation
         Constant speed [rad/s], or rotation of the wheel.
     road : RoadWave, optional
-        Road that moves the centre along n2, at the phase 2 pi R theta / lambda; flat if not given.
+        Road that moves the centre vertically, along n2, at the phase 2 pi R theta / lambda; flat if not
+        given.
 
     Raises
     ------
