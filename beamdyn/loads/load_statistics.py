@@ -52,7 +52,7 @@ from beamdyn.scene.scene import Scene
 
 _TURN = 2 * np.pi
 _EPSILON = 2.0**-48  # relative rounding error of each term of a mean square
-_FIRST_MODES = 4  # number of modes of a first model, which only gives the magnitudes of the outputs
+_FIRST_MODES = 4  # number of modes of a first, coarse model, used only for the magnitudes of the outputs
 # Ratio of the tolerance of time derivatives to that of other statistics: peak factors depend only on the
 # logarithm of time derivatives.
 _OF_RATES = 1e3
@@ -236,7 +236,7 @@ class LinearLoads:
 def _sum(
     values: Mapping[Quantity, Any], by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray
 ) -> np.ndarray:
-    """Sum the arrays of all quantities of the root's motion, each times the quantity's value."""
+    """Sum the arrays of the quantities of the root's motion, each times its value, and `zero`."""
     return sum((value * by_quantity[name] for name, value in values.items() if name in by_quantity), zero)
 
 

@@ -100,7 +100,7 @@ class SteadyLoads(span_loads.SpanLoads):
         def largest(name: str) -> np.ndarray:
             return np.nanmax(self.values(name), axis=0, keepdims=True)
 
-        return self.draw(ax, quantity, largest, f"largest {span_loads.with_unit(quantity)}, of all speeds")
+        return self.draw(ax, quantity, largest, f"largest {span_loads.with_unit(quantity)} over all speeds")
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
@@ -188,7 +188,7 @@ class LoadLines:
     amplitude : ndarray of complex, shape (C, S, K, lines)
         Amplitudes a at C speeds, S stations, of K outputs; nan where there is no steady response.
     of_harmonics : ndarray, shape (C, S, K)
-        Estimated error by the harmonics left out.
+        Estimated error due to neglected harmonics.
     """
 
     harmonics: np.ndarray

@@ -301,7 +301,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # speed of sound divided by length
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # sound_speed: over length
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None
@@ -335,6 +335,6 @@ def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
     """Evaluate a section property in the directions of bending: shape (n, planes, planes)."""
     values = np.zeros((len(xi), planes, planes))
     for (i, j), profile in section_tensor(beam, name).items():
-        if max(i, j) < planes:  # torsion in one plane also has a second rotary inertia
+        if max(i, j) < planes:  # torsion needs a second rotary inertia even in one plane
             values[:, i, j] = profile(xi)
     return values

@@ -247,7 +247,7 @@ class Harvester(FieldsOnly):
             side = getattr(beam.section, name)(inside)
             if np.ptp(side) > _EVEN * side[0]:
                 bound = f"it must be constant under the layers, and is {side[0]:.6g} m where they begin"
-                remedy = f"give them a shorter span, or a beam of even {name} there"
+                remedy = f"give the layers a shorter span, or a beam of constant {name} there"
                 raise InvalidValue(name, float(side[-1]), bound, remedy, "m")
             found.append(float(side[0]))
         return found[0], found[1]

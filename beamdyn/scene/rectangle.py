@@ -78,7 +78,7 @@ class Rectangle:
     def __post_init__(self) -> None:
         modulus = size("youngs_modulus", self.youngs_modulus, "Pa")
         set_fields(self, youngs_modulus=modulus, density=size("density", self.density, "kg/m3"))
-        for name in SIDES:  # values whose third power must not overflow: bending stiffness contains it
+        for name in SIDES:  # the third power of a side, in the bending stiffness, must not overflow
             set_fields(self, **{name: as_profile(name, getattr(self, name), power=3)})
 
     @cached_property

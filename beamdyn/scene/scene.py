@@ -228,8 +228,8 @@ class Scene(OneLine):
     def straightened(self) -> Scene:
         """The scene with small deflections of a straight axis: no large deflection, sweep, prebend, tip load.
 
-        Coupling of strains in section matrices, and torsion of a twisted strip, are left out, which
-        only large deflection models.
+        Coupling of strains by section matrices and torsion of a twisted strip, which only large deflection
+        can model, are left out.
         """
         torsion = self.physics.torsion and not (self.beam.is_twisted and self.beam.section is not None)
         straight = replace(

@@ -198,7 +198,7 @@ def follow(
             yield replace(_find_between(load, point, following, lambda found: found.p_rate), p_rate=0.0)
         point, before = following, stability
         yield point
-        # The longest step changes slope angles by `longest` [rad], or the parameter by that part of it.
+        # The longest step changes slope angles by `longest` [rad], or the parameter by that fraction of it.
         size = max(_metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale))
         step = min(longest / size, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
@@ -310,7 +310,10 @@ def _find_between(load: Loading, before: Point, after: Point, function: Callable
 
 
 def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
-    """Iterate to a solution, at fixed p or in the plane normal to a curve's direction at `point`."""
+    """Iterate to a solution, at fixed p or in the plane normal to a curve's direction at `point`.
+
+    Returns q, p and the number of iterations.
+    """
     last = np.nan  # no change is known yet, and comparisons with it are false
     for iteration in range(1, _ITERATIONS + 1):
         r, A = load.at(q, p)

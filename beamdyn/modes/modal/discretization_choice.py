@@ -43,8 +43,8 @@ _MANY_ON_EACH = 2  # number of modes per segment above which polynomials need fe
 # fewer functions, the stated error of a mode may be too small.  Twisted sections need fewer, because a moment
 # in either direction bends them in both.
 _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
-# Smallest number of elements on a segment, so that the third of three meshes has a quarter as many on each;
-# and on one with a boundary layer, so that half as many resolve it too.
+# Smallest number of elements on a segment: enough for a mesh with a quarter of them, the coarsest of three;
+# and on a segment with a boundary layer: enough for a mesh with half of them to resolve the layer.
 _ON_EACH, _ON_LAYERS = 4, 8
 _SHORT = 0.02  # segment length x/L below which elements of a quarter of it have large rounding errors
 _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers

@@ -237,7 +237,10 @@ class DeflectedSolver(Solver):
         return np.array([self._found[abs(v)] for v in speeds])
 
     def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> None:
-        """Find equilibria near another discretization's, of the same stability, at speeds that have them."""
+        """Store the equilibria that are close to those of another discretization, and as stable.
+
+        Speeds at which there is none are left out.
+        """
         for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
             near = self.elastica.nearest(guide.elastica, of_guide)
             with suppress(NotConverged):

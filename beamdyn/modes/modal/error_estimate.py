@@ -168,7 +168,8 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
-    for name, functions in model.equations.sections:  # coordinates of the last function across come last
+    # The coordinates of the last function across the width are the last ones of a block.
+    for name, functions in model.equations.sections:
         end = model.equations.blocks[name].stop
         kept[end - functions.of_each : end] = False
     fewer = solver_of(model.equations, np.flatnonzero(kept)).eigenvalues(speeds, squared.shape[1])

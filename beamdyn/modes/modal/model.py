@@ -264,7 +264,8 @@ def bends(model: Model) -> bool:
 FEWEST_MODES = 2  # number of modes of the first basis, unless a number is given
 SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are searched
 _MOST_MODES = 60  # largest number of modes: with more, the fastest modes need too small steps
-_MASSLESS = 1e-14  # ratio of a mass pivot to the largest, below which it is 0 within rounding
+# Ratio of a pivot of the mass matrix to the largest pivot, below which it is 0 within rounding.
+_MASSLESS = 1e-14
 _DEPENDENT = 1e-10  # relative singular value below which mode shapes are linearly dependent
 
 
@@ -297,13 +298,13 @@ class ModalBasis:
         return self.speeds == (0.0,)
 
     def refined(self) -> ModalBasis | None:
-        """Add half as many modes again, at least two; None if that exceeds the largest allowed number."""
+        """Return a basis with half as many modes more, at least two; None if these are too many."""
         assert self.modes is not None
         modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None
 
     def with_one_more(self) -> ModalBasis | None:
-        """Add one mode; None if that exceeds the largest allowed number."""
+        """Return a basis with one mode more; None if these are too many."""
         assert self.modes is not None
         return replace(self, modes=self.modes + 1) if self.modes < _MOST_MODES else None
 

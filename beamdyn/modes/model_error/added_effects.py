@@ -316,7 +316,7 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
     scale = _scale(M, K)  # functions of high order have large entries
     M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
     modes = (v / scale[:, None]).T
-    with np.errstate(divide="ignore", invalid="ignore"):  # singular equations have no mode
+    with np.errstate(divide="ignore", invalid="ignore"):  # singular equations give nan
         each = [_shift(M, C, K, at, x) for at, x in zip(s.tolist(), modes, strict=True)]
     return np.array(each, dtype=complex)
 

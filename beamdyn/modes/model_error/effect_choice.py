@@ -382,7 +382,10 @@ def choose_by(
 
 
 def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
-    """Add effects, except those in `barred`, until the other addable ones sum to half the tolerance."""
+    """Add effects, except those in `barred`, until the other addable ones are small in sum.
+
+    Their sizes then sum to at most half the tolerance, or each is below a tenth of it.
+    """
 
     def sizes(found: _Candidate) -> dict[str, float]:
         return {name: size for name, size in found.addable().items() if name not in barred}
