@@ -301,7 +301,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # sound_speed: over length
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # sound_speed: per length of the beam
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None

@@ -166,7 +166,7 @@ class Enclosure(ABC):
         return self._lower_form(*self._coefficients(z))
 
     def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
-        """Compute the form Q_z - R/q (see module) at z = 0: if positive definite, no lower speed is critical."""
+        """Compute the form Q_z - R/q (see module) at z = 0: if positive definite, lower speeds are stable."""
         return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
@@ -177,8 +177,8 @@ class Enclosure(ABC):
         tail = self._tail(coefficients, terms)
         if tail >= 1:
             return None
-        # Computed moments a have rounding errors b.  As |a + b|^2 <= 2 (a^2 + b^2), R is doubled, and so is the
-        # allowance for rounding.
+        # Computed moments a have rounding errors b.  As |a + b|^2 <= 2 (a^2 + b^2), R and the allowance for
+        # rounding are doubled.
         R = 2 * self._residual(coefficients)
         allowance = self._allowance(terms) + 2 * self._residual_allowance(terms) / (1 - tail)
         return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
