@@ -97,7 +97,7 @@ class SpanLoads(SceneResult, JudgedByRepeating):
 
     C is the number of times or speeds, S the number of stations, d of modelled planes of bending (1 or 2), P
     of points of the section.  Loads are the forces and moments that the part of the beam outboard of a
-    station exerts on the part inboard, in the axes of the deflected beam.  They are computed from the
+    station exerts on the part inboard; moments are about the deflected axis.  Loads are computed from the
     external forces and the inertia outboard, not from a curvature.
 
     `left_out` contains the estimated relative change of the `judged_quantity`'s largest value by each

@@ -46,7 +46,7 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
 def refuse_bending_in_space(scene: Scene) -> None:
     """Refuse large deflection in space in analyses that model it in one plane only (an `InvalidValue`)."""
     if scene.bends_in_space:
-        bound = "this analysis has large deflection in one plane alone, in the plane of rotation or out of it"
+        bound = "this analysis models large deflection in one plane: in the plane of rotation or out of it"
         remedy = "leave large_deflection out where the deflection is small, or model one such plane"
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
 
