@@ -369,9 +369,9 @@ def warn_of_modes(
     unstable = growth_rate > 0
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
-        said = "unstable at ", Speeds(speeds[s]), f": growth_rate > 0 in {counted(unstable[s].sum(), 'mode')}"
+        end = f": {counted(unstable[s].sum(), 'growing mode')}; see growth_rate"
         rate = {"quantity": "growth rate [1/s]", "value": growth_rate[s].max(), "limit": 0.0}
-        yield Statement(*said, kind=GROWING, **rate)
+        yield Statement("unstable at ", Speeds(speeds[s]), end, kind=GROWING, **rate)
     yield from warn_of_strain(strain.max(initial=0))
     if scene.physics.large_deflection:
         # The import is inside the function because importing takes long.
