@@ -244,7 +244,7 @@ def warn_of_model(model: ModelAtSpeed) -> Iterator[Statement]:
     found = solver.solve(np.array([model.speed]), min(model.modes or MOST_JUDGED, solver.size))
     growing = int((np.real(found.eigenvalue) > 0).sum())
     if growing:
-        end = f": {growing} mode(s) grow; see poles"
+        end = f": {counted(growing, 'growing mode')}; see poles"
         yield Statement("unstable at ", Speeds(model.speed), end, kind=GROWING)
     yield from warn_of_rotation(model.model, model.speed)
 

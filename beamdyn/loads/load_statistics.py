@@ -1,24 +1,28 @@
 """Statistics of loads along the span under a random input: mean squares, rates and expected extremes.
 
-A stationary Gaussian process with the mean squares s^2 of its values and r^2 of their rates passes its mean
-upwards nu = r / (2 pi s) times a second (Rice).  Of N = 2 nu T passages in the duration T, of both signs and
-taken as independent, the largest is
+A stationary Gaussian process with mean 0, the mean square s^2 of its values and the mean square r^2 of its
+time derivative crosses 0 upwards nu = r / (2 pi s) times per second (Rice).  In the duration T it has about
+N = 2 nu T extremes, maxima and minima together.  If these are independent, the expected magnitude of the
+largest one is
 
     s (sqrt(2 ln N) + 0.5772 / sqrt(2 ln N))
 
-on the average (Davenport (1964), Proceedings of the Institution of Civil Engineers 28, 187-196), and with the
-probability p none passes s sqrt(2 ln(N / -ln p)).
+(Davenport (1964), Proceedings of the Institution of Civil Engineers 28, 187-196), and with the probability p
+no extreme exceeds s sqrt(2 ln(N / -ln p)).
 
-The rows of `beamdyn.loads.load_rows` give the loads by the state, and by the input itself, which acts on the
-part outboard of a cut at once: L = d u + P q + V q'.  With the residues q_k of the coordinates at the poles
-p_k, H(s) = d + sum (P + p_k V) q_k / (s - p_k).
+The rows of `beamdyn.loads.load_rows` give the loads L = d u + P q + V q' as linear functions of the
+coordinates q, their rates q', and the input u, which acts at once on the part of the beam outboard of a
+station.  With the residues q_k of the coordinates at the poles p_k, the transfer functions from u to L are
+H(s) = d + sum (P + p_k V) q_k / (s - p_k).
 
-An input of a fixed direction acts on a turning beam by two harmonics, H+ at f + n and H- at f - n.  At the
+An input with the frequency f and a fixed direction acts on a rotating beam through two harmonics: with the
+transfer functions H+ at the frequency f + n, and H- at f - n, where n is the frequency of rotation.  At the
 angle theta of rotation, which is 0 at the time 0, the mean square is
 
     int (|H+|^2 + |H-|^2) S df + 2 Re exp(2 i theta) int H+ conj(H-) S df,
 
-whose mean over a turn is the first integral, and whose largest value has the second one's magnitude.
+with the spectral density S of the input.  The mean over a turn is the first integral; the largest value in a
+turn is the first integral plus twice the magnitude of the second one.
 
 In shapes of arrays, S counts stations, K outputs at each, m poles, n coordinates, and F frequencies.
 """
@@ -47,8 +51,8 @@ from beamdyn.scene.motion import MotionSample
 from beamdyn.scene.scene import Scene
 
 _TURN = 2 * np.pi
-_EPSILON = 2.0**-48  # relative rounding error of a term
-_FIRST_MODES = 4  # number of modes of a first model, which only gives the magnitudes of the outputs
+_EPSILON = 2.0**-48  # relative rounding error of each term of a mean square
+_FIRST_MODES = 4  # number of modes of a first, coarse model, used only for the magnitudes of the outputs
 # Ratio of the tolerance of time derivatives to that of other statistics: peak factors depend only on the
 # logarithm of time derivatives.
 _OF_RATES = 1e3
@@ -81,7 +85,10 @@ class LoadFractions:
         return self.direct[..., None] + self.residues @ (1 / (s - self.poles[:, None]))
 
     def mean_square(self, spectrum: PowerSpectrum, order: int = 0) -> np.ndarray:
-        """Compute the mean square of each output (order 0) or of its time derivative (order 2)."""
+        """Compute the mean square of each output (order 0) or of its time derivative (order 2).
+
+        The order is the power of the angular frequency by which the spectral density is multiplied.
+        """
         by_pole, constant = self._parts(spectrum, order)
         return constant + 2 * np.real(by_pole).sum(axis=-1)
 
@@ -102,7 +109,7 @@ class LoadFractions:
         return by_pole, np.abs(self.direct) ** 2 * integrals.whole
 
     def together_with(self, other: LoadFractions, spectrum: PowerSpectrum) -> np.ndarray:
-        """Integrate the input's density times H conj(H'): (stations, outputs).
+        """Integrate the input's spectral density times H conj(H') over frequency: (stations, outputs).
 
         H are these transfer functions, H' those of `other`.
         """
@@ -117,7 +124,7 @@ class LoadFractions:
 
     @property
     def _mu(self) -> np.ndarray:
-        """Poles as functions of the input's frequency [Hz]."""
+        """Poles as complex frequencies of the input [Hz]: p_k / (2 pi i), minus the shift."""
         return self.poles / (2j * np.pi) - self.shift
 
 
@@ -202,7 +209,10 @@ class LinearLoads:
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
-        """Outputs by displacements and velocities (accelerations eliminated), and by unit forces."""
+        """Outputs as linear functions of coordinates and velocities, and outputs per unit force on each.
+
+        The equations of motion were used to eliminate the accelerations.
+        """
         model, n = self.model, self.model.equations.size
         rows = span_rows(model.scene, model.discretization, model.equations, self.stations)
         acceleration = rows.acceleration.get("unity", np.zeros((*rows.shape, n)))
@@ -218,7 +228,7 @@ class LinearLoads:
         return position, velocity
 
     def _values(self, by_quantity: Mapping[Quantity, np.ndarray]) -> dict[Quantity, np.ndarray]:
-        """Evaluate quantities of the root's motion in steady rotation."""
+        """Evaluate the quantities of the root's motion named by the keys, for steady rotation."""
         root = root_motion(self.model.scene.mount, MotionSample.steady(self.model.speed))
         return {name: getattr(root, name) for name in by_quantity}
 
@@ -226,7 +236,7 @@ class LinearLoads:
 def _sum(
     values: Mapping[Quantity, Any], by_quantity: Mapping[Quantity, np.ndarray], zero: np.ndarray
 ) -> np.ndarray:
-    """Sum the arrays of all quantities of the root's motion, each times the quantity's value."""
+    """Sum the arrays of the quantities of the root's motion, each times its value, and `zero`."""
     return sum((value * by_quantity[name] for name, value in values.items() if name in by_quantity), zero)
 
 
@@ -244,7 +254,7 @@ def largest_in_turn(fractions: Sequence[LoadFractions], spectrum: PowerSpectrum)
 
 @dataclass(frozen=True)
 class RandomStatistics:
-    """Statistics of K outputs at S stations; the components of all quantities follow one another.
+    """Statistics of K outputs at S stations; K counts the components of all load quantities together.
 
     Parameters
     ----------
@@ -287,20 +297,23 @@ class RandomStatistics:
     def largest(self, factor: Callable[[np.ndarray], np.ndarray], duration: float) -> np.ndarray:
         """Compute the expected largest magnitudes in a duration [s].
 
-        `factor` gives the peak factors, largest value by root mean square, for numbers of zero crossings.
+        `factor` computes peak factors (largest value divided by rms value) from numbers of zero crossings.
         """
         count = np.maximum(2 * self.crossings * duration, _LEAST)
         return np.abs(self.mean) + self.gravity + factor(count) * self.rms_in_turn
 
 
 def expected_factor(count: np.ndarray) -> np.ndarray:
-    """Compute the mean of the largest value in a number of zero crossings, divided by the rms value."""
+    """Compute the mean peak factor (largest value over rms value) in a number of zero crossings."""
     root = np.sqrt(2 * np.log(count))
     return root + np.euler_gamma / root
 
 
 def safe_factor(count: np.ndarray, probability: float) -> np.ndarray:
-    """Compute a quantile of the largest value in a number of zero crossings, divided by the rms value."""
+    """Compute a quantile of the peak factor (largest value over rms value) in a number of zero crossings.
+
+    The largest value does not exceed the quantile times the rms value with the given probability.
+    """
     return np.sqrt(2 * np.log(np.maximum(count / -math.log(probability), 1.0)))
 
 

@@ -42,8 +42,8 @@ from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out
 _TURN = 2 * np.pi
 _HOUR = 3600.0
 _FEW = 10.0  # number of zero crossings below which the statistics of the largest value do not hold
-_DIGITS = 3  # number of significant digits of the expected largest value, as statistics have no more
-_UNSURE = 0.05  # relative error of the largest value above which none of its digits may be certain
+_DIGITS = 3  # largest number of digits shown of an expected largest value, which is an estimate
+_UNSURE = 0.05  # relative error of the largest bending moment above which a warning is given
 _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 
 
@@ -308,7 +308,7 @@ def _warn_of_few(found: RandomStatistics, duration: float) -> Iterator[str]:
     """Yield a warning if the duration is too short for statistics of the largest value."""
     crossings = found.crossings[found.rms > 0]
     if len(crossings) and duration * crossings.min() < _FEW:
-        yield f"in {duration:g} s there are few vibrations: the expected largest values are rough estimates"
+        yield f"duration = {duration:g} s has few vibrations: largest values are rough; give a longer one"
 
 
 def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpeed) -> Iterator[str]:

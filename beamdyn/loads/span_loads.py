@@ -43,7 +43,7 @@ _JUDGED = "strain", "moment", "force"
 
 
 class LoadCase(NamedTuple):
-    """First axis of a result's arrays (time or speed): name, unit, and field with the values."""
+    """What the first axis of load arrays counts (times or speeds): name, unit, and field of the values."""
 
     name: str
     unit: str
@@ -96,8 +96,9 @@ class SpanLoads(SceneResult, JudgedByRepeating):
     """Forces, moments, curvatures, strains and stresses at stations along the span.
 
     C is the number of times or speeds, S the number of stations, d of modelled planes of bending (1 or 2), P
-    of points of the section.  Loads are those of the part outboard of a station on the part inboard,
-    about its deflected axis; they follow from external forces and inertia outboard, not from a curvature.
+    of points of the section.  Loads are the forces and moments that the part of the beam outboard of a
+    station exerts on the part inboard; moments are about the deflected axis.  Loads are computed from the
+    external forces and the inertia outboard, not from a curvature.
 
     `left_out` contains the estimated relative change of the `judged_quantity`'s largest value by each
     neglected physical effect, `model_error` the magnitude of the sum of these changes; both are computed at
@@ -188,7 +189,7 @@ class SpanLoads(SceneResult, JudgedByRepeating):
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments that limit a repeated analysis to both sides of the station of the largest value."""
+        """Arguments that limit a repeated analysis to the station of the largest value, both its sides."""
         return {"at": [self.largest(self.judged_quantity).x] * 2}
 
     @property
@@ -295,7 +296,7 @@ def with_unit(quantity: str) -> str:
 
 @dataclass(frozen=True)
 class AskedLoads:
-    """Request for loads along the span: stations and outputs, common to all kinds of results.
+    """Request for loads along the span: the stations and the outputs there, for any kind of analysis.
 
     Parameters
     ----------

@@ -35,9 +35,9 @@ from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_stati
 
 _MODES = 3  # number of modes that the model resolves: loads in equilibrium need no more
 _SINGULAR = 1e-13  # eigenvalue of the scaled stiffness below which it counts as 0
-# Moments at the root fall by 0.26 to 0.42 times the squared ratio of deflection and length, up to 0.5: by
-# `equilibrium`, at four setting angles.
-_BENT, _BY_DEFLECTION = 0.4, "roughly, by the squared ratio of deflection and length"
+# Large deflection reduces the moment at the root by a fraction of 0.26 to 0.42 times the squared ratio of
+# deflection to length, for ratios up to 0.5: found with `equilibrium` at four setting angles.
+_BENT, _BY_DEFLECTION = 0.4, "estimated roughly from the squared ratio of deflection to length"
 # The difference of two models at a station may be small by chance: it counts as at least this fraction of the
 # largest difference along the span.
 _ALONG = 0.25
@@ -74,7 +74,7 @@ class StaticLoads(span_loads.SpanLoads):
     case: ClassVar[span_loads.LoadCase] = span_loads.SPEEDS
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate load values with large deflection from the straight beam's tip deflection."""
+        """Estimate load values with large deflection from those of the straight beam and its deflection."""
         ratio = float(np.linalg.norm(self.tip, axis=1).max()) / self.scene.beam.length
         return SolvedValues(straight / (1 + _BENT * ratio**2), "", _BY_DEFLECTION if ratio else "")
 
@@ -125,13 +125,13 @@ def static_loads(
     ValueError
         If an argument is out of its range, a point lies outside the section, or large deflection is modelled.
     NoEquilibrium
-        An ArithmeticError: if rotation or its weight buckles the straight beam, or the beam turns freely
+        An ArithmeticError: if rotation or its own weight buckles the straight beam, or the beam turns freely
         about its root.
 
     References
     ----------
-    Equilibrium of the part beyond the cut (standard); modes left out are static: Craig and Kurdila (2006),
-    Fundamentals of Structural Dynamics, section 11.4.
+    Equilibrium of the part beyond the cut (standard); neglected modes respond statically: Craig and Kurdila
+    (2006), Fundamentals of Structural Dynamics, section 11.4.
 
     Examples
     --------
@@ -176,9 +176,9 @@ def static_loads(
 
 
 class _Solved(NamedTuple):
-    """K outputs and errors by a model at C speeds and S stations, (C, S, K); tip deflections (C, d).
+    """Loads computed with one model: K outputs and their errors, (C, S, K), and tip deflections (C, d).
 
-    The tip bends in d directions.
+    C counts speeds, S stations, and d the directions in which the beam bends.
     """
 
     model: Model
@@ -220,7 +220,7 @@ def _solve(
     if (lost := least <= _SINGULAR).any():
         raise NoEquilibrium(
             f"the straight beam has no stable equilibrium at {speeds[lost][0]:.6g} rad/s: rotation or its "
-            "weight buckles it at this or a lower speed, or it turns freely about its root"
+            "own weight buckles it at this or a lower speed, or it turns freely about its root"
         )
     q = np.linalg.solve(scaled, (equations.load(root) / size)[..., None])[..., 0] / size
     return rows.through(asked.outputs.matrix).at(root, q, np.zeros_like(q)), q @ equations.tips.T

@@ -33,7 +33,8 @@ _MOST, _MOST_POINTS = 1001, 100
 _SAME = 1e-12  # distance, in lengths of the beam, below which a position counts as at a breakpoint
 _BESIDE = 2e-12  # distance from a jump, in lengths of the beam, at which section properties are evaluated
 _ROUNDING = 1e-9  # relative tolerance within which a point on the section's edge counts as inside
-# Largest difference of two models, relative to the largest load along the span, that bounds the error.
+# Ratio of the difference between two models to the largest load along the span, above which the difference
+# is no bound of the error.
 _LIMIT = 0.3
 _ROUNDING_OF_LOADS = 1e-12  # rounding error relative to the largest load along the span
 _BETWEEN = 21  # number of further stations at which two models are compared
@@ -84,12 +85,12 @@ def _checked_positions(at: Positions, length: float) -> np.ndarray:
     if not 1 <= len(x) <= _MOST:
         raise InvalidValue("at", at, f"give 1 to {_MOST} positions along the beam", unit="m")
     outside = (x < 0) | (x > length * (1 + _SAME))
-    refuse(outside, "at", x, "m", "stations lie from the root, 0, to the tip, {limit}", limit=length)
+    refuse(outside, "at", x, "m", "stations must lie from the root, 0, to the tip, {limit}", limit=length)
     refuse(np.diff(x, prepend=0.0) < 0, "at", x, "m", "positions must ascend", "sort them")
     again = np.zeros(len(x), dtype=bool)
     again[2:] = x[2:] == x[:-2]
-    bound = "a position stands for one side, or twice for both sides of it"
-    refuse(again, "at", x, "m", bound, "give it twice")
+    bound = "a position may be given once, for one side, or twice for both sides"
+    refuse(again, "at", x, "m", bound, "give it no more than twice")
     return x
 
 
@@ -109,8 +110,9 @@ class StationOutputs:
     Parameters
     ----------
     matrix : ndarray, shape (S, K, 1 + 2 d)
-        K components by the loads: forces, moments, curvatures, strains and stresses, one after the other;
-        where sections camber, also by the moment of camber, (S, K, 2 + 2 d).
+        The K outputs (forces, moments, curvatures, strains and stresses, one after the other) per unit of
+        each load: axial force, d shear forces, d bending moments.  Where sections camber, the moment of
+        camber is one more load, (S, K, 2 + 2 d).
     sizes : tuple of int
         Number of components of each quantity.
     """
@@ -130,7 +132,7 @@ class StationOutputs:
 
 
 class Sections(NamedTuple):
-    """Outputs at stations, points (stations, points, 2) [m], notes on what the strain leaves out."""
+    """Outputs at stations; points of the sections, (stations, points, 2) [m]; notes on neglected strain."""
 
     outputs: StationOutputs
     points: np.ndarray
@@ -217,15 +219,15 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
     array = as_floats(points)
     if array is None or array.ndim != 2 or array.shape[1] != 2 or not 1 <= len(array) <= _MOST_POINTS:
         many = f"give 1 to {_MOST_POINTS} pairs"
-        bound = f"{many}: the distances from the neutral axes along the section's directions"
+        bound = f"{many} of distances from the neutral axes, along the section's two directions"
         raise InvalidValue("points", points, bound, "such as [(-0.001, 0.0), (0.001, 0.0)]", "m")
     if not np.isfinite(array).all():
         raise InvalidValue("points", points, "give finite numbers", unit="m")
     for side, name in enumerate(("first", "second")):
         limit = half[:, side].min()  # nan: the section's edge is not known
         bad = np.abs(array[:, side]) > limit * (1 + _ROUNDING)
-        bound = f"it lies outside the section: along its {name} direction the thinnest reaches {{limit}}"
-        remedy = "leave {field} out: the outermost of each"
+        bound = f"it lies outside the section: in the {name} direction the smallest one reaches {{limit}}"
+        remedy = "leave {field} out, for the outermost points"
         refuse(bad, "points", array[:, side], "m", bound, remedy, limit=limit)
     return array
 
@@ -279,8 +281,8 @@ def mode_error(
     """Estimate the errors of outputs from distances of loads between models, including rounding.
 
     At the nodes of the modes that a larger model adds, the distance is small by chance, although other modes
-    left out contribute.  So the largest distance counts within half a wave of the first mode
-    left out, to either side of a station.
+    left out contribute.  So the error at a station follows from the largest distance within half
+    a wavelength of the first mode left out, to either side.
 
     Parameters
     ----------
@@ -300,8 +302,8 @@ def mode_error(
     Returns
     -------
     ndarray, shape (..., S, K)
-        Infinite where the distance exceeds 0.3 of the largest value along the span, and rounding: then it
-        does not bound the error.
+        Infinite where the distance exceeds 0.3 of the largest value along the span plus the rounding error:
+        then it does not bound the error.
     """
     modes = np.inf if basis.modes is None else basis.modes  # number of modes of each field
     near = np.abs(stations.xi[:, None] - with_neighbours(stations).xi) <= 1 / (modes + 0.5)

@@ -100,7 +100,7 @@ class SteadyLoads(span_loads.SpanLoads):
         def largest(name: str) -> np.ndarray:
             return np.nanmax(self.values(name), axis=0, keepdims=True)
 
-        return self.draw(ax, quantity, largest, f"largest {span_loads.with_unit(quantity)}, of all speeds")
+        return self.draw(ax, quantity, largest, f"largest {span_loads.with_unit(quantity)} over all speeds")
 
     @cached_property
     def _amplitudes(self) -> np.ndarray:
@@ -137,8 +137,8 @@ def steady_loads(
 
     References
     ----------
-    As `static_loads`, with inertia (d'Alembert, standard); modes left out are static: Craig and Kurdila
-    (2006), Fundamentals of Structural Dynamics, section 11.4.
+    As `static_loads`, with inertia (d'Alembert, standard); neglected modes respond statically: Craig and
+    Kurdila (2006), Fundamentals of Structural Dynamics, section 11.4.
 
     Examples
     --------
@@ -188,7 +188,7 @@ class LoadLines:
     amplitude : ndarray of complex, shape (C, S, K, lines)
         Amplitudes a at C speeds, S stations, of K outputs; nan where there is no steady response.
     of_harmonics : ndarray, shape (C, S, K)
-        Estimated error by the harmonics left out.
+        Estimated error due to neglected harmonics.
     """
 
     harmonics: np.ndarray
@@ -264,9 +264,13 @@ def lines_of_response(
 def _solve(
     response: SteadyResponse, equations: Equations
 ) -> tuple[list[periodic_system.Pair], np.ndarray, np.ndarray]:
-    """Solve for the coordinates, also at harmonics to which periodic coefficients couple the given ones.
+    """Solve for the coordinates at the harmonics of the response and at those coupled to them.
 
-    Lines of the tip that are within rounding error at all speeds are left out.
+    Periodic coefficients couple the harmonics of the response to further ones.  Harmonics that move the tip
+    by no more than rounding error at any speed are left out.
+
+    Returns the harmonics and the complex amplitudes (speeds, harmonics, coordinates), first with, then
+    without the further harmonics.
     """
     request = response.request
     vibration = vibration_of(request.model, request.basis, request.scene.motion, response.speeds)
@@ -294,7 +298,11 @@ def _expand(
     rates: np.ndarray,
     q: np.ndarray,
 ) -> np.ndarray:
-    """Compute complex amplitudes (C, S, K, U) of K outputs at C speeds and S stations, at U harmonics."""
+    """Compute complex amplitudes (C, S, K, U) of K outputs at C speeds and S stations, at U harmonics.
+
+    `union` lists the U harmonics, `pairs` those of the coordinates' amplitudes `q`, `spectra` has the
+    amplitudes of the root's motion, and `rates` the rates of both phases [rad/s].
+    """
     everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
     everywhere[:, [union.index(h) for h in pairs]] = q
     velocity = 1j * (rates @ np.array(union).T)[..., None] * everywhere

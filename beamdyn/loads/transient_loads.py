@@ -111,11 +111,11 @@ class TransientLoads(span_loads.SpanLoads):
         return super().left_out_effects if from_rest else nothing_known(self.scene)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Find the largest value with an effect added: `as_deflection`, or if None, by a simulation."""
+        """Find the largest value with an effect added: by `as_deflection`, or by simulation if it is None."""
         return self.as_deflection(self.judged(self), name) or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate load values with large deflection from the change of the largest deflection."""
+        """Estimate load values with large deflection from its effect on the largest deflection."""
         return self.as_deflection(straight, LARGE_DEFLECTION.name) or SolvedValues(straight, reason)
 
     @property
@@ -244,8 +244,8 @@ def transient_loads(
 
     References
     ----------
-    As `static_loads`, with inertia (d'Alembert, standard); modes left out are static: Craig and Kurdila
-    (2006), Fundamentals of Structural Dynamics, section 11.4.
+    As `static_loads`, with inertia (d'Alembert, standard); neglected modes respond statically: Craig and
+    Kurdila (2006), Fundamentals of Structural Dynamics, section 11.4.
 
     Examples
     --------

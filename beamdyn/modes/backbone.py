@@ -179,8 +179,8 @@ def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[
 # Ratio of the tip amplitude to the length.  The frequency change is computed at half this amplitude, and the
 # error of the result from the difference to the change at the full amplitude.
 SMALL = 0.02
-# Ratio of the stated error to the difference of the two changes, because this difference may be a rounding
-# error.
+# Ratio of the stated error of the coefficient to the difference between its values at two amplitudes, because
+# this difference may be due to rounding.
 _OF_AMPLITUDE = 2.0
 _STEADY = 1e-3  # relative difference of the coefficients of two bases below which these converge steadily
 # Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.
@@ -231,8 +231,8 @@ class FreeVibration:
     def warnings(self) -> list[str]:
         """List a warning if the second harmonic is close to a natural frequency, and so excites a mode."""
         values = np.abs(np.linalg.eigvals(np.linalg.solve(self._dynamic(0), self._dynamic(2))))
-        near = values.min() < _RESONANT * 3  # of the vibrating mode, the value is |1 - 2^2| = 3
-        return ["twice the frequency is near that of another mode: the two exchange energy"] if near else []
+        near = values.min() < _RESONANT * 3  # 3 = |1 - 2^2| is the value of the vibrating mode itself
+        return ["twice the frequency is near that of another mode: the modes exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:
         """Compute the dynamic stiffness matrix at a multiple of the frequency."""
@@ -251,7 +251,10 @@ class FreeVibration:
         return float(np.real(v.conj() @ _harmonic(odd, 1)) / np.real(v.conj() @ slope @ v))
 
     def _forces(self, harmonics: dict[int, np.ndarray]) -> np.ndarray:
-        """Compute the residual of the equations over one period (_SAMPLES, n), for given harmonics of q."""
+        """Compute the residual of the equations at samples over one period, for given harmonics of q.
+
+        The shape is (_SAMPLES, n), with n coordinates.
+        """
         phase = 2 * np.pi * np.arange(_SAMPLES) / _SAMPLES
         waves = {h: np.exp(1j * h * phase)[:, None] * x for h, x in harmonics.items()}
         q, rate, acceleration = (

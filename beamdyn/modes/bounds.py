@@ -147,7 +147,7 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     lower = _lowest([low for low, _, _ in enclosed], modes, -np.inf)
     upper = _lowest([high for _, high, _ in enclosed], modes, np.inf)
     method = max((ritz for _, _, ritz in enclosed), key=lambda ritz: ritz.functions)
-    speeds = np.array([speed])  # rotation may bend the beam more than the bounded model allows
+    speeds = np.array([speed])  # for a warning if rotation bends the beam too far for the model
     tips = choose_model(scene, "ritz", speeds, 1, _OF_DEFLECTION).static_tips(speeds)
     deflection = np.linalg.norm(tips, axis=1)
     bent = warn_of_static_deflection(deflection, scene.beam.length, speeds)
@@ -209,7 +209,8 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
     beam, length = scene.beam, scene.beam.length
     m, e = (p.coefficients[0][0] for p in (beam.mass_per_length, beam.bending_stiffness))
     mass, stiffness = beam.mass_per_length.scaled(1 / m), beam.bending_stiffness.scaled(1 / e)
-    tip, unit = beam.tip or TipMass(0.0), m * length  # unit of mass: beam with the root's section
+    # The unit of mass is the mass of a uniform beam with the root's section.
+    tip, unit = beam.tip or TipMass(0.0), m * length
     moments = (tip.inertia, tip.inertia_about_bending_direction, tip.axial_inertia)
     tip = TipMass(tip.mass / unit, tip.offset / length, *(j / (unit * length**2) for j in moments))
     xi, lumped = (values.tolist() for values in beam.lumps)
@@ -235,9 +236,10 @@ def bound_critical_speed(scene: Scene) -> float:
     sizes = iter(_PROOF_SIZES)
 
     def finer(found: tuple[float, float]) -> tuple[float, float] | None:
-        """Enlarge the basis; return the squared speed below which stability is proved, and Ritz's value.
+        """Enlarge the basis, and prove stability up to a speed with it.
 
-        None if there is no larger basis to try.
+        Returns the squared speed below which stability is proved, and the squared critical speed by Ritz's
+        method; None if there is no larger basis to try.
         """
         if (total := next(sizes, None)) is None:
             return None

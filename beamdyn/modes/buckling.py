@@ -1,6 +1,7 @@
 """Decision whether rotation buckles a beam at any speed, without a search for the critical speed.
 
-A critical speed exists exactly if some deflection u lowers the form that multiplies the squared speed,
+A critical speed exists if and only if, for some deflection u, the form that multiplies the squared speed is
+negative,
 
     F(u) = int N u'^2 - c^2 int rho A u^2 - c^2 m t^2 + (s^2 (J_e - J_1) + eps N(L)) D^2,
 
@@ -20,7 +21,7 @@ rho A dx includes the point masses along the beam; N is smaller beyond each of t
 If T_22 < 0, or T_22 = 0 and T_12 is not, the tip body topples, however stiff the beam.  If a <= 0 and
 T >= 0, then F >= 0.
 
-**Precone** eta gives N = N_B cos^2 eta + r N_A cos eta.  Over cos^2 eta, F is the form with
+**Precone** eta gives N = N_B cos^2 eta + r N_A cos eta.  Divided by cos^2 eta, F is the form above with
 a = -r / cos eta, the coefficients 1 / cos^2 eta in place of c^2 = 1 in the plane of rotation and tan^2 eta in
 place of 0 out of it, J_e - J_1 less tan^2 eta B, and s^2 = 1 - c^2 of either sign: the integral of
 (s^2 x - a) rho A u^2 / x is not negative where s^2 L >= a.
@@ -168,7 +169,7 @@ def decide_buckling(scene: Scene) -> Buckling:
 
 
 def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
-    """Decide for a slender beam in one plane, if necessary by the lowest eigenvalue of a string (see module).
+    """Decide whether a slender beam in one plane has a critical speed; if need be, by a string (see module).
 
     The parameters are a, the distance of the root from the rotation axis, against the beam's direction [m];
     c^2 and s^2; and `tilt`, the part of T_22 by the moments of inertia J_e and J_1 [kg m2].
@@ -256,7 +257,7 @@ def _least_turning(scene: Scene) -> float:
 
 
 def _decide_toppling(scene: Scene) -> Buckling | None:
-    """Decide for a beam that only the inertia of tilting bodies can buckle; None if no body tilts.
+    """Decide whether the inertia of tilting sections or a tip body buckles a beam; None if nothing tilts.
 
     Integrals are sums over n cells; the components of tensors (n, 2, 2) are in the plane of rotation and out
     of it.
@@ -300,14 +301,14 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # speed of sound divided by length
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # sound_speed: per length of the beam
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None
     # Whatever the stiffness, sections or a tip body may topple in an infinitely short bend.
     free_end = tension[-1] < moments[-1] * (components[1] ** 2).sum()
     surely = not mount.precone and bool(shear or oblique or free_end)
-    why = "only the rotary inertia of what tilts out of the plane can buckle it"
+    why = "only the rotary inertia of tilting sections or a tip body can buckle it"
     return Buckling(surely or None, f"the rotation stiffens the beam; {why}", speed, slowest)
 
 
@@ -334,6 +335,6 @@ def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
     """Evaluate a section property in the directions of bending: shape (n, planes, planes)."""
     values = np.zeros((len(xi), planes, planes))
     for (i, j), profile in section_tensor(beam, name).items():
-        if max(i, j) < planes:  # torsion in one plane also has a second rotary inertia
+        if max(i, j) < planes:  # torsion needs a second rotary inertia even in one plane
             values[:, i, j] = profile(xi)
     return values

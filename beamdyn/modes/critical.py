@@ -56,7 +56,7 @@ _BENT = Words(
     Named("equilibrium_branches", "beamdyn branches"),
     " finds where its equilibrium turns back",
 )
-_LOST = "the beam that {} has no stiffness against a further bend or twist"
+_LOST = "at this speed the beam that {} has no stiffness against further bending or twisting"
 _KEPT = "the beam that {} was followed up to the largest speed tried, and stays stable"
 # Number of functions of a model that only determines whether rotation loads the beam transversely.
 _FUNCTIONS = 5
@@ -120,7 +120,7 @@ class CriticalPoint(SceneResult, StatesModelError):
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the critical speed by each neglected effect, of shape ()."""
         if self.of_bent_beam and np.isfinite(self.speed):
-            return nothing_known(self.scene, "it is not computed for a beam that is already bent")
+            return nothing_known(self.scene, "changes are not computed for a beam that is already bent")
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)
@@ -234,8 +234,8 @@ def _of_straight_beam(
     models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
-        # The argument, which uses only the order of magnitude of the strain, missed buckling below 1 %
-        # strain.
+        # The argument, which uses only the strain's order of magnitude, excluded buckling below 1 % strain; a
+        # model shows that there is buckling.
         buckling = replace(buckling, speed=None)
     # The search is for buckling by bending, within the validity of linear theory.
     sought = buckling.exists is not False and buckling.speed is None
@@ -253,7 +253,7 @@ def _of_straight_beam(
             found = bending
         else:
             reason = "the rotation softens the stretch by more than the axial stiffness"
-    none_below = found.speed  # the bounds of slender planes replace this value if the speed is not resolved
+    none_below = found.speed  # replaced by a guaranteed bound if the error is unresolved
     if np.isinf(found.error):
         by_plane = () if scene.physics.stretch else map(bound_critical_speed, separate_planes(scene))
         none_below = min(by_plane, default=0.0 if scene.physics.stretch else buckling.none_below)

@@ -31,7 +31,10 @@ _TO_HALF = 4  # number of steps from a basis to a basis of about half the size
 
 @dataclass(frozen=True)
 class FoundSpeed:
-    """Critical speed of a model [rad/s]; its relative error, found with `coarse`, and the rounding part."""
+    """Critical speed found with a model, and its relative error from comparison with a coarser model.
+
+    `speed` is in rad/s, `coarse` is the coarser model, and `rounding` the part of the error due to rounding.
+    """
 
     model: Model
     coarse: Model
@@ -43,9 +46,10 @@ class FoundSpeed:
 def models_of_critical_speed(
     scene: Scene, discretization: DiscretizationChoice, target: float, cheapest: bool
 ) -> Iterator[Model]:
-    """List the models in which a critical speed is searched, see `list_models`; only the first is built now.
+    """Iterate over the models for the search of a critical speed, from coarse to fine: see `list_models`.
 
-    This refuses a beam with too many segments even if no model needs to be solved.
+    The first model is built at once, so that a beam with too many segments is refused even if no model needs
+    to be solved.
     """
     named = isinstance(discretization, str)
     modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
@@ -131,7 +135,10 @@ def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
 
 
 def _margin(model: Model) -> float:
-    """Choose the ratio of the error to the difference between two models; 1 for meshes, which are halved."""
+    """Return the ratio of the error of a bent beam's speed to the difference from the coarser model.
+
+    It is 1 for finite elements, of which the coarser model has half as many.
+    """
     if model.discretization.order is not None:
         return 1.0
     return (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor

@@ -64,7 +64,8 @@ class Equilibrium(SceneResult, StatesModelError):
         "straight": continued from rest as the speed rises, also if rotation bends the beam; "bent": another
         equilibrium at this speed, bent to the opposite side.
     tip : ndarray, shape (3,)
-        Position of the tip from the root along b1, b2, b3 [m].
+        Position of the tip from the root along b1, b2, b3 [m]: b1 along the beam at its root, b2 across it in
+        the plane of rotation, b3 perpendicular to both.
     tip_angle : float
         Slope angle of the tip, from b1 towards the direction of bending [rad]; in space the angle between
         the beam at the tip and b1.
@@ -119,7 +120,10 @@ class Equilibrium(SceneResult, StatesModelError):
         return SolvedValues(np.asarray(tip), _UNSTABLE if np.isnan(tip) else "")
 
     def shape(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Compute positions (len(x), 3) along b1, b2, b3 [m] of the points at x [m] along the beam."""
+        """Compute positions (len(x), 3) along b1, b2, b3 [m] of the points at x [m] along the beam.
+
+        b1 is along the beam at its root, b2 perpendicular to it in the plane of rotation, b3 to both.
+        """
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise InvalidValue("x", x, f"positions run from 0 to the length {self.scene.beam.length:g} m")
@@ -235,7 +239,10 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
 
 
 def _directions(mount: Mount) -> np.ndarray:
-    """Compute components along b2, b3 of the direction of bending and of the perpendicular one (rows)."""
+    """Compute components along b2, b3 of the direction of bending and of the perpendicular one (rows).
+
+    b2 is in the plane of rotation, b3 perpendicular to it.
+    """
     c, s = aligned_cos_sin(mount.bending_angle)
     return np.array([[c, s], [-s, c]])
 
@@ -259,7 +266,8 @@ class EquilibriumBranch:
     speeds : ndarray, shape (k,)
         Speeds [rad/s].
     tip : ndarray, shape (k, 3)
-        Positions of the tip from the root along b1, b2, b3 [m].
+        Positions of the tip from the root along b1, b2, b3 [m]: b1 along the beam at its root, b2 across it
+        in the plane of rotation, b3 perpendicular to both.
     stable : ndarray of bool, shape (k,)
         Whether the potential energy, including that of centrifugal forces, has a minimum there.
     turning_speeds : ndarray, shape (t,)

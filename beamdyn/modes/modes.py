@@ -17,7 +17,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import count, real, within
 from beamdyn.common.plots.export import write_shapes
 from beamdyn.common.plots.plots_of_shapes import plot_shapes, plot_shapes_by_plane, plot_surfaces
-from beamdyn.common.results.one_line import error_at_most, listed, states, warned
+from beamdyn.common.results.one_line import counted, error_at_most, listed, states, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import GROWING, TOLERANCE, Speeds, Statement, announced
@@ -83,7 +83,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
         Static tip deflection under rotation [m], with its sign; its magnitude if two planes are modelled; nan
         above the critical speed.
     axial_strain : float
-        Largest static axial strain: uncertainty of a model without stretch; nan if it is unknown.
+        Largest static axial strain, a measure of the error of a model without stretch; nan if it is unknown.
     warnings : tuple of str
         Warnings about the validity and accuracy of the result.
     provenance : Provenance
@@ -369,9 +369,9 @@ def warn_of_modes(
     unstable = growth_rate > 0
     if unstable.any():
         s = int(unstable.any(axis=1).argmax())
-        said = "unstable at ", Speeds(speeds[s]), f": {unstable[s].sum()} mode(s) grow; see growth_rate"
+        end = f": {counted(unstable[s].sum(), 'growing mode')}; see growth_rate"
         rate = {"quantity": "growth rate [1/s]", "value": growth_rate[s].max(), "limit": 0.0}
-        yield Statement(*said, kind=GROWING, **rate)
+        yield Statement("unstable at ", Speeds(speeds[s]), end, kind=GROWING, **rate)
     yield from warn_of_strain(strain.max(initial=0))
     if scene.physics.large_deflection:
         # The import is inside the function because importing takes long.

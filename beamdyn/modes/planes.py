@@ -82,7 +82,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
     lumps = scene.beam.point_masses
     if lumps and scene.physics.planes == 2 and not separate_planes(scene, spinning=bool(speed)):
         of_lumps = (
-            "bounds for two planes that twist or bending angle couples are known only without point masses"
+            "bounds for two planes coupled by twist or bending angle are known only without point masses"
         )
         raise InvalidValue("point_masses", len(lumps), of_lumps, "leave them out, or model one plane")
     if scene.physics.planes == 2 and speed and scene.mount.precone:
@@ -92,7 +92,7 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
 
 
 def _quarter_turns(beam: Beam) -> int | None:
-    """Return the number of 90 degree turns of all sections alike; None if it varies or is not whole."""
+    """Return by how many 90 degree turns the twist turns every section; None if not one whole number."""
     if beam.twist is None:
         return 0
     if any(any(row[1:]) for row in beam.twist.coefficients):

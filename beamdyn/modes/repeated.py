@@ -70,7 +70,7 @@ class JudgedByRepeating(StatesModelError):
         if self.again is None or not np.isfinite(self.judged(self)).any():
             return nothing_known(self.scene, _LOADED if self.again is None else _NOTHING)
         found, name = left_out_by_solving(self.scene, self.solve), LARGE_DEFLECTION.name
-        if reason := found.not_known.get(name):  # not known for two planes, or at an oblique angle
+        if reason := found.not_known.get(name):  # unknown change by large deflection
             found = _with_change(found, name, self.judged(self), self.bent_values(self.judged(self), reason))
         return replace(found, counted=self.counted or found.counted)
 
@@ -89,22 +89,24 @@ class JudgedByRepeating(StatesModelError):
         except InvalidValue as refusal:
             if name == LARGE_DEFLECTION.name:
                 return self.bent_values(self.solve(scene.straightened, "").values, refusal.bound)
-            if scene.models_width and name == CAMBER.name:  # sections that cannot camber bound the change
+            if scene.models_width and name == CAMBER.name:  # camber was refused: flat sections give a bound
                 held_flat = without_camber(replace(scene, physics=self.scene.physics))
                 return self.solve(held_flat, name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
 
     @cached_property
     def _small_changes(self) -> dict[str, float]:
-        """Changes of the first frequency by effects that hardly change the lowest frequencies."""
+        """Relative change of the first frequency by each effect that hardly changes the lowest ones."""
         changes = left_out_of_frequencies(self.scene, self.bending_speed, _LOWEST).changes
         small = {name: each for name, each in changes.items() if np.abs(each).max() <= _SMALL}
         return {name: float(each[0]) for name, each in small.items() if name != LARGE_DEFLECTION.name}
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate values with large deflection by the first frequency; nan, with a `reason`, if impossible.
+        """Estimate values with large deflection from those of the straight beam and the first frequency.
 
-        If rotation does not bend the beam, they are those of the straight beam.
+        The values vary in proportion to the compliance of the first mode.  Where that does not hold
+        (`follows_stiffness`), they are nan, with the given reason.  If rotation does not bend the beam, they
+        are the `straight` values.
         """
         effects = left_out_of_frequencies(self.scene, self.bending_speed, 1)
         name = LARGE_DEFLECTION.name
@@ -116,7 +118,7 @@ class JudgedByRepeating(StatesModelError):
 
 
 def _with_change(found: LeftOutEffects, name: str, own: np.ndarray, bent: SolvedValues) -> LeftOutEffects:
-    """Add the change by an effect to the others, if it follows from the values `own` and `bent`."""
+    """Add an effect's change, from values without it (`own`) and with it (`bent`), if all are finite."""
     with np.errstate(divide="ignore", invalid="ignore"):
         change = bent.values / own - 1
     if not np.isfinite(change).all():

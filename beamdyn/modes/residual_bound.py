@@ -166,7 +166,7 @@ class Enclosure(ABC):
         return self._lower_form(*self._coefficients(z))
 
     def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
-        """Compute the form Q_z - R/q (see module) at z = 0: if positive, no lower speed is critical."""
+        """Compute the form Q_z - R/q (see module) at z = 0: if positive definite, lower speeds are stable."""
         return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
@@ -177,7 +177,8 @@ class Enclosure(ABC):
         tail = self._tail(coefficients, terms)
         if tail >= 1:
             return None
-        # R is doubled, with twice the allowance, because |a + b|^2 <= 2 (a^2 + b^2).
+        # Computed moments a have rounding errors b.  As |a + b|^2 <= 2 (a^2 + b^2), R and the allowance for
+        # rounding are doubled.
         R = 2 * self._residual(coefficients)
         allowance = self._allowance(terms) + 2 * self._residual_allowance(terms) / (1 - tail)
         return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
@@ -242,7 +243,10 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _residuals(self) -> tuple[np.ndarray, float]:
-        """Integrals of products of unbalanced moments, and a bound of the ratio of EI within a cell."""
+        """Integrals of products of unbalanced moments, and a bound of the ratio of EI within a cell.
+
+        The shape of the integrals is (forms, functions, forms, functions).
+        """
         assert self.flexibility is not None
         compliance = bound_on_cells(self.flexibility, self.part.ends)
         stiffness = bound_on_cells(self.scene.beam.bending_stiffness, self.part.ends)
@@ -381,7 +385,10 @@ class CoupledEnclosure(Enclosure):
         return self.unit * products**2 + variation * len(self.stiffness) * moments**2
 
     def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
-        """Derive the sizes of all seven forms from those of tension (2), mass, tip slope, and of twisting."""
+        """List a measure of each of the seven forms (a trace or a bound) in the order of the class.
+
+        `traces` has it for both tensions, the mass and the slope at the tip, `twisting` for the last form.
+        """
         return np.array([*traces[:3], traces[2], *(self._tensor_terms * traces[3]), twisting])
 
     def _sizes(self) -> np.ndarray:

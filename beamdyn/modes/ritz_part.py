@@ -36,9 +36,10 @@ from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile
 
-# Largest number of moments in each of two coupled directions: two seconds of computing time.
+# Largest number of functions (bending moments) in each of two coupled directions, which take two seconds.
 MOST_MOMENTS = 100
-# Number of segments up to which piecewise polynomials need fewer functions than moments over the beam.
+# Largest number of segments with which polynomials on each segment need fewer functions than bending moments
+# that are polynomials along the whole beam.
 _FEW_SEGMENTS = 6
 _SAMPLES = 32  # number of stiffness samples on a segment, used only for the choice of the basis
 _STEEP = 300.0  # ratio of two stiffness samples above which cells must be graded
@@ -68,7 +69,7 @@ class RitzPart(ABC):
     @cached_property
     @abstractmethod
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule, exact for products of two moments and of lower-degree polynomials with properties."""
+        """Gauss rule, exact for products of two moments and for properties times lower-degree polynomials."""
 
     @cached_property
     @abstractmethod
@@ -102,7 +103,7 @@ class RitzPart(ABC):
 
     @cached_property
     def loads(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Tension per squared speed, per root acceleration, and mass per length at the Gauss points."""
+        """Tension per squared speed, tension per root acceleration, mass per length, at the Gauss points."""
         n_a, n_b = axial_tension(self.beam)
         return self.at(n_b), self.at(n_a), self.at(self.beam.mass_per_length)
 
@@ -185,7 +186,7 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def quadrature(self) -> ArcQuadrature:
-        """Gauss rule, exact for products of two moments and of lower-degree polynomials with properties."""
+        """Gauss rule, exact for products of two moments and for properties times lower-degree polynomials."""
         return ArcQuadrature(Cells(self.ends, self._degree + _extra_degrees(self.beam) + 1))
 
     @cached_property
@@ -381,7 +382,10 @@ class CoupledRitzPart(RitzPart):
         return self.gram(self.curvature, self._both_at(self.quadrature))
 
     def forms(self, direction: np.ndarray) -> np.ndarray:
-        """Build forms: tension by speed, and by root acceleration; mass; mass for motion in a `direction`."""
+        """Build the matrices of four forms: both tensions, mass, and mass moving in a `direction` (2,).
+
+        The tensions are per squared speed and per acceleration of the root.
+        """
         tension_b, tension_a, mass = self.loads
         slope, along = self.slope[..., :-1], direction @ self.deflection
         inertia = self.gram(self.deflection[..., :-1], mass) + self.tip.mass * self.centre @ self.centre.T

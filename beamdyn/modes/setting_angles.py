@@ -26,7 +26,7 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
 
-_LINEAR = "the limits are those of linear theory: of a bent beam the loci have another shape at every angle"
+_LINEAR = "the limits are those of linear theory: the loci of a bent beam have another shape at every angle"
 # Rounding error of an angle [rad]: the cosine of a limit is a quotient of small differences.
 _ROUNDING = 1e-12
 
@@ -216,13 +216,13 @@ def _arccos(a: float, b: float) -> float:
 def _limit_warnings(first: float, second: float, deflection: float) -> Iterator[Statement]:
     for limit, said in (
         (first, "no first limit: at rest the first frequency"),
-        (second, "no second limit: at the top speed the frequency"),
+        (second, "no second limit: at the top speed the first frequency"),
     ):
         if np.isnan(limit):
-            yield Statement(f"{said} changes the same way at every setting angle", kind=NO_ANSWER)
+            yield Statement(f"{said} rises, or falls, at every setting angle alike", kind=NO_ANSWER)
     if not deflection <= LARGE_DEFLECTION:
         text = f" (static tip deflection {deflection:.3g} of the length at the top speed)"
         known = "" if np.isnan(deflection) else text
-        said = f"at the limits, rotation bends the beam statically, and they are {OUTSIDE}{known}"
+        said = f"rotation bends the beam statically at the limits, which are {OUTSIDE}{known}"
         about = {"quantity": "static tip deflection over the length", "value": deflection}
         yield Statement(said, kind=OUTSIDE, limit=LARGE_DEFLECTION, **about)

@@ -71,7 +71,10 @@ def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
 
 
 def _compare_blades(key: str, discretization: str = "ritz") -> Iterator[tuple[str, PrintedValue]]:
-    """Compare published frequencies [Hz], by their key in the data, with computed ones; name the blade."""
+    """Compare published frequencies [Hz] of blades with computed ones: yield blade name, comparison.
+
+    `key` is the name of the published frequencies in the data of each blade.
+    """
     for row in load("blades")["blade"]:
         if printed := row.get(key):
             whole = key == "frequency_printed_by_bmodes"

@@ -60,9 +60,10 @@ def rolling_scene(**physics: Any) -> bd.Scene:
 
 
 def _compare(what: str, ours: Iterable[Any], *known: tuple) -> Iterator[Comparison]:
-    """Compare a value and its error with `known`: source, value, and optionally decimals, expected reason.
+    """Compare a computed value and its error, `ours`, with each of the `known` values.
 
-    By default the decimals are those with which Python prints the value.
+    A known value is a tuple: source, value and, optionally, number of decimals and the reason for a
+    difference that is expected.  By default the decimals are those with which Python prints the value.
     """
     number, error = map(float, ours)
     for source, value, *more in known:
@@ -98,7 +99,8 @@ def first_frequencies() -> Iterator[Comparison]:
 def limits_of_setting_angle() -> Iterator[Comparison]:
     """Compare with Section 3.3: the two setting-angle limits [deg].
 
-    Rows of the second limit: for N eigenfunctions without a top speed; then converged, for some top speeds.
+    The second limit is computed for bases of several sizes at an infinite top speed, then converged for
+    several finite top speeds.
     """
     printed, scene = VALUES["setting_angle_limits"], inward_scene()
     for name, method in _METHODS:

@@ -101,7 +101,7 @@ def _fig_9() -> Figure:
     """Draw the first frequency over speed on either side of the second setting-angle limit."""
     angles = inward_beam.PAPER["figures"]["fig_9"]["setting_angle"]
     figure, left, right = _three_panels(angles, 400.0, "Fig. 9", "the paper's second limit")
-    five = "five clamped-free modes: one turns down, the other rises on"
+    five = "five clamped-free modes: one curve turns down, one rises"
     _draw(left, angles, np.linspace(0, 12000.0, 501), five, bd.Ritz(5, "eigenfunctions"))
     _draw(right, angles, np.linspace(0, 5000.0, 501), "converged: both turn down")
     return figure

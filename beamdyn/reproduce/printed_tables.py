@@ -183,7 +183,8 @@ def nondimensional_scene(case: Mapping[str, Any]) -> bd.Scene:
     Returns
     -------
     Scene
-        Scene whose eigenvalues at gamma rad/s have the case's nondimensional frequencies as magnitudes.
+        Scene whose eigenvalues, at the case's nondimensional speed gamma in rad/s, have the nondimensional
+        frequencies as magnitudes.
     """
     delta, alpha = case["delta"], case.get("alpha")
     beam = bd.Beam.from_stiffness(
@@ -198,7 +199,7 @@ def nondimensional_scene(case: Mapping[str, Any]) -> bd.Scene:
 
 
 def twisted_scene(case: Mapping[str, Any]) -> bd.Scene:
-    """Build the scene of a case of ``twisted_beams.toml``; its speed is gamma rad/s."""
+    """Build the scene of a case of ``twisted_beams.toml``, whose speed in rad/s is the case's gamma."""
     names = ("second_bending_stiffness", "twist", "shear_stiffness", "rotary_inertia")
     given: dict[str, Any] = {name: Polynomial(case[name]) for name in names if name in case}
     beam = bd.Beam.from_stiffness(
@@ -217,7 +218,7 @@ def summary_table(rows: Iterable[Summary]) -> Group:
     """Build the table of summaries."""
     heads = ("source", "by", "values", "printed to", "deviation", "error", "verdict")
     title = (
-        "Beams and blades of other sources: the worst deviation, errata apart, and estimated error, relative"
+        "Beams and blades of other sources: largest relative deviation (without errata) and estimated error"
     )
     return table(title, heads, (row.cells() for row in rows), (0, 1, 6))
 
@@ -226,8 +227,8 @@ def errata_table(errata: Errata) -> Group:
     """Build the table of errata with their proofs."""
     heads = ("source", "at", "mode", "printed", "ours, Ritz", "power series", "bounds", "off by")
     title = (
-        "Errata: ours, an independent method, relative width of guaranteed bounds that exclude the print,\n"
-        "and by how many units of its last digit the print is off (less than one: cut off or rounded twice)"
+        "Errata: our value, an independent one, relative width of bounds that exclude the printed value,\n"
+        "and deviation of the print in units of its last digit (less than one: cut off or rounded twice)"
     )
     return table(title, heads, ([source, *entry.cells()] for source, entry in errata), (0, 1))
 

@@ -20,10 +20,10 @@ moment, and q the charge per length:
 =========  =====================  ==========================
 
 b is the width, h the thickness of the beam, t that of a layer; z = (h + t)/2 is the distance of the middle of
-a layer from that of the beam, z_n that of the neutral axis, to which one layer on one side moves it.  A
-voltage on one layer also stretches the beam, by e b v/(E A), as no axial force resists, which adds to the
-capacitance.  Series and parallel as in Erturk and
-Inman (2009), Smart Materials and Structures 18, 025009; unimorph: own derivation, docs/harvester.md.
+a layer from the middle of the beam, and z_n the distance of the neutral axis from there, which a layer on one
+side only moves.  As no axial force resists, a voltage on such a layer also stretches the beam, by the strain
+e b v/(E A); this adds to the capacitance.  Series and parallel as in Erturk and Inman (2009), Smart Materials
+and Structures 18, 025009; unimorph: own derivation, docs/harvester.md.
 """
 
 from __future__ import annotations
@@ -247,7 +247,7 @@ class Harvester(FieldsOnly):
             side = getattr(beam.section, name)(inside)
             if np.ptp(side) > _EVEN * side[0]:
                 bound = f"it must be constant under the layers, and is {side[0]:.6g} m where they begin"
-                remedy = f"give them a shorter span, or a beam of even {name} there"
+                remedy = f"give the layers a shorter span, or a beam of constant {name} there"
                 raise InvalidValue(name, float(side[-1]), bound, remedy, "m")
             found.append(float(side[0]))
         return found[0], found[1]

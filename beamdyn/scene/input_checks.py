@@ -23,7 +23,7 @@ Beam = Any  # `beamdyn.scene.beam.Beam`, whose module imports this one
 # Distance by which a point may exceed the length, relative to the length, because of rounding errors.
 _ROUNDING = 1e-12
 _TURNS_BACK = np.pi / 2  # kink [rad] of the axis at which the axis runs back on itself
-OFFSETS = ("mass_offset", "tension_offset")  # names of distances of these centres from the shear centre
+OFFSETS = ("mass_offset", "tension_offset")  # distances of centres from the shear centre
 _MADE = {PointMass: "PointMass(position, mass)", PointSpring: "PointSpring(position, stiffness)"}
 _BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold the tip itself"}
 

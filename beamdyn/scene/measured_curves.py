@@ -63,8 +63,8 @@ class MeasuredCurves(ReadOnlyArrays):
         array = checks.as_floats(given)
         values = table_of("value", given if array is None or array.ndim != 1 else array[:, None])
         if values.shape != (len(self.x), len(names)) or not np.isfinite(values).all():
-            bound = f"it is to have {len(self.x)} rows of {len(names)} finite values, one a name"
-            raise InvalidValue("value", given, bound, "give a row for each and a name for each column")
+            bound = f"it must have {len(self.x)} rows of {len(names)} finite values, one per name"
+            raise InvalidValue("value", given, bound, "give one row per abscissa and one name per column")
         checks.kind("source", getattr(self, "source", ""), str)
         checks.set_fields(self, value=values, names=names)
         set_doubts(self, values, "")

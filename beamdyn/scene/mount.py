@@ -182,7 +182,7 @@ class Mount(OneLine):
         ),
     ] = math.inf
     second_root_stiffness: Annotated[
-        float, Described("N m/rad", "k2", "the same for bending in the perpendicular direction", **_SPRING)
+        float, Described("N m/rad", "k2", "root stiffness for bending in the second direction", **_SPRING)
     ] = math.inf
     precone: Annotated[
         float, Described("rad", "eta", "angle of an outward beam out of the plane of rotation", **_PRECONE)

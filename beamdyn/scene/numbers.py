@@ -80,7 +80,7 @@ def is_of_motion(path: str) -> bool:
 
 
 def is_speed(path: str) -> bool:
-    """Return whether a path is "speed", or of a speed in the motion, for which users must give "speed"."""
+    """Return whether a path is "speed", or a speed of the motion, in place of which "speed" must be given."""
     return path == SPEED or (is_of_motion(path) and path.endswith(f".{SPEED}"))
 
 
@@ -106,7 +106,7 @@ def check_path(argument: str, path: object) -> str:
 
 
 def _numbers(made: type, path: str) -> Iterator[tuple[str, str]]:
-    """Yield path and unit of each number, but speeds, in the fields of a class and in objects in its fields.
+    """Yield path and unit of each number, except speeds, in a class's fields and in objects in its fields.
 
     Each path starts with `path`.
     """

@@ -233,17 +233,17 @@ class PhysicsChoice:
         included = [_say_included(effect) for effect in self.effects if effect.included]
         several = len(included) > 1 and not math.isnan(self.time)
         cost = f"; in all {self.time:.2g} times the time of {self._plain}" if several else ""
-        return f'physics "auto", for {self.tolerance:g}: {", ".join(included) or self._plain}{cost}'
+        return f'physics "auto", tolerance {self.tolerance:g}: {", ".join(included) or self._plain}{cost}'
 
     def warnings(self) -> Iterator[Statement]:
         """Yield a warning if the tolerance is not met, or if it is not known whether it is met."""
         large = [e for e in self.effects if not e.included and e.reason and e.size > self.tolerance / 2]
-        each = (Words(f"{e.name}, left out, is worth {_say_size(e.size)}: ", e.reason) for e in large)
+        each = (Words(f"the effect of {e.name}, left out, is {_say_size(e.size)}: ", e.reason) for e in large)
         if not self.is_met:
-            left_out = f"what is left out is worth {_say_size(self.model_error)}"
+            left_out = f"the effects left out amount to {_say_size(self.model_error)}"
             beyond = (
-                "what its theories leave out, most of it in short thick sections, and strain "
-                f"by rotation may change the answer by {_say_size(self.beyond_models)} more"
+                "errors of the theories included, largest for short thick beams, and strain by "
+                f"rotation may change the answer by {_say_size(self.beyond_models)} more"
             )
             named = Words(left_out, ": ", joined("; ", each)) if large else left_out
             parts = (named, self.model_error), (beyond, self.beyond_models)

@@ -70,7 +70,7 @@ class TipMass:
     ] = 0.0
     transverse_inertia: Annotated[
         float | None,
-        Described("kg m2", "J_e", "moment of inertia about the direction of bending; else inertia", least=0),
+        Described("kg m2", "J_e", "moment of inertia about the bending direction, default: inertia", least=0),
     ] = None
     axial_inertia: Annotated[
         float, Described("kg m2", "J_1", "moment of inertia about the beam axis", least=0)

@@ -435,6 +435,6 @@ def check_positive(name: str, profile: Profile, power: int = 1) -> None:
         k = np.unravel_index(np.where(bad, values, np.inf).argmin(), values.shape)
         value = 0.0 if abs(values[k]) <= least[k[1]] else float(values[k])
         bound = (
-            f"it must be positive and finite; less than {zero:.1g} of the largest beside it counts as zero"
+            f"it must be positive and finite; less than {zero:.1g} of the largest value nearby counts as zero"
         )
         raise InvalidValue(name, value, bound, "end a taper above 0", where=f" at x/L = {where[k]:.3f}")

@@ -6,16 +6,18 @@ and across, and the voltage v, its moments and charge per area are
 
     M1 = D11 k1 + D12 k2 - theta v,    M2 = D12 k1 + D11 k2 - theta v,    q = theta (k1 + k2) + C v.
 
-Sum and difference of the two directions do not couple.  They are beams of the moduli E/(1 - nu) and
-E/(1 + nu): D11 + D12 and D11 - D12 are the stiffnesses of these, each about its own neutral axis, and the
-voltage bends the first alone, by the stress e/(1 - nu).  A section that cambers freely, M2 = 0, has the
-bending stiffness D11 - D12^2/D11 and the coupling theta (1 - D12/D11), as a beam has if strip and layers have
-one Poisson's ratio, and the capacitance C + theta^2/D11, less than the beam's: the strip hinders the bending
-across that a voltage causes.  A section that is held flat, k2 = 0, has D11, theta and C.
+The sum and the difference of the two moments do not couple.  They bend the strip like beams of the moduli
+E/(1 - nu) and E/(1 + nu): D11 + D12 and D11 - D12 are the stiffnesses of these beams, each about its own
+neutral axis, and the voltage bends only the first beam, by the stress e/(1 - nu).  A section that cambers
+freely, M2 = 0, has the bending stiffness D11 - D12^2/D11 and the coupling theta (1 - D12/D11), as a beam has
+if strip and layers have one Poisson's ratio, and the capacitance C + theta^2/D11, less than the beam's: the
+strip hinders the bending across that a voltage causes.  A section that is held flat, k2 = 0, has D11,
+theta and C.
 
-Bending strains a layer unevenly through its thickness t, and its field then varies: with the electric
-displacement the same all through, it is E = -v/t - e (S - mean of S)/eps, S the sum of both strains.  That
-stiffens a layer against its own curvature, by (e^2/eps) t^3/12 in D11 and in D12, whatever the circuit.
+Bending strains a layer unevenly through its thickness t, so that its electric field E varies, too.  As the
+electric displacement is constant through the thickness, E = -v/t - e (S - mean of S)/eps, where S is the sum
+of the strains in both directions.  This stiffens a layer against bending about its own middle, by
+(e^2/eps) t^3/12 in D11 and in D12, whatever the circuit.
 
 References
 ----------
@@ -81,7 +83,7 @@ class Rectangle:
     def __post_init__(self) -> None:
         modulus = size("youngs_modulus", self.youngs_modulus, "Pa")
         set_fields(self, youngs_modulus=modulus, density=size("density", self.density, "kg/m3"))
-        for name in SIDES:  # values whose third power must not overflow: bending stiffness contains it
+        for name in SIDES:  # the third power of a side, in the bending stiffness, must not overflow
             set_fields(self, **{name: as_profile(name, getattr(self, name), power=3)})
 
     @cached_property
@@ -197,9 +199,10 @@ class Rectangle:
 
 
 def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Compute the series of 3 J/(b t^3) for arrays of sides b >= t; the result has a further first axis.
+    """Compute 3 J/(b t^3) as a series, for arrays of sides b >= t; the result has a first axis of length 1.
 
-    With tanh = 1 its terms add up to a multiple of zeta(5); the remaining terms decrease as exp(-n pi b/t).
+    J is the torsional constant.  With tanh = 1 the terms of the series add up to a multiple of zeta(5); the
+    remaining terms decrease as exp(-n pi b/t).
     """
     n = np.arange(1, 16, 2)[:, None, None]
     left = ((1 - np.tanh(n * np.pi * b / (2 * t))) / n**5).sum(axis=0)
@@ -209,7 +212,8 @@ def _torsion_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
 def _warping_factor(b: np.ndarray, t: np.ndarray) -> np.ndarray:
     """Compute the warping function's mean square divided by b^2 t^2/144, for arrays of sides b >= t.
 
-    The result has a further first axis. It is divided by 1 + 7 (t/b)^2, which was fitted to solids.
+    The result has an additional first axis of length 1.  It is divided by 1 + 7 (t/b)^2, which was fitted to
+    solids.
 
     With y along the width and z along the thickness, Saint-Venant's warping function is y z minus
     8 t^2/pi^3 sum over odd n of (-1)^((n-1)/2) sin(n pi z/t) sinh(n pi y/t)/(n^3 cosh(n pi b/2t)).

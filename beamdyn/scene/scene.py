@@ -132,7 +132,7 @@ class Scene(OneLine):
         elif isinstance(self.physics, AutomaticPhysics) and self.physics != AUTO:
             # An effect that is set explicitly ends the automatic choice.
             set_fields(self, physics=Physics(**vars(self.physics)))
-        remedy = 'give "auto", or such as Physics(planes=2, shear=True), both planes and shear deformation'
+        remedy = 'give "auto", or a Physics such as Physics(planes=2, shear=True), two planes with shear'
         kind("physics", self.physics, Physics, remedy)
         if self.physics_choice is not None and self.physics_choice.physics != self.physics:
             set_fields(self, physics_choice=None)  # the stored choice was made for other physics
@@ -228,8 +228,8 @@ class Scene(OneLine):
     def straightened(self) -> Scene:
         """The scene with small deflections of a straight axis: no large deflection, sweep, prebend, tip load.
 
-        Coupling of strains in section matrices, and torsion of a twisted strip, are left out, which
-        only large deflection models.
+        Coupling of strains by section matrices and torsion of a twisted strip, which only large deflection
+        can model, are left out.
         """
         torsion = self.physics.torsion and not (self.beam.is_twisted and self.beam.section is not None)
         straight = replace(
@@ -402,7 +402,7 @@ def _check_width(beam: Beam, physics: Physics) -> None:
         given = Named("(..., poissons_ratio=0.3)", ", with poissons_ratio = 0.3,")
         remedy = Words(RECTANGULAR, given, " makes one of steel")
         if section is not None and beam.electrodes is not None:
-            remedy = Words("give that of the beam and harvester.poissons_ratio")
+            remedy = Words("give poissons_ratio of the beam, and harvester.poissons_ratio")
             lacking = "poissons_ratio of the beam and of its layers"
         raise InvalidValue(name, True, "it needs {other}", remedy, other=lacking)
     if beam.is_twisted and section is not None and not physics.large_deflection:
@@ -443,7 +443,7 @@ def _with_corners(beam: Beam, planes: int) -> Profile:
     assert beam.strip is not None
     part = float(beam.strip.width(np.zeros(1))[0]) / beam.length
     places = tuple(part * each for each in _CORNERS)
-    if planes == 2:  # adds the end of the clamp's stiffening of bending along the width
+    if planes == 2:  # the clamp stiffens bending along the width up to x/L = reach
         reach = beam.strip.stiffening_across(beam.length).breakpoints[1]
         places = reach / 2, reach, places[1]
     places = [each for each in places if each <= _LAST_CORNER]

@@ -26,14 +26,15 @@ UPPER = tuple((i, j) for i in range(SIZE) for j in range(i, SIZE))  # indices of
 _FORCES = 3  # number of rows of forces; the others are of moments
 LEAST = 1e-10  # smallest accepted eigenvalue of a positive definite matrix scaled to a diagonal of 1
 MOST_ASYMMETRY = 1e-4  # largest accepted asymmetry of a matrix scaled to a diagonal of 1
-# A row is reported if its component of the least eigenvalue's eigenvector is above this part of the largest.
+# Entries in the rows of a matrix are named as faulty if the components of these rows in the eigenvector of
+# the smallest eigenvalue exceed this fraction of the largest component.
 _PART = 0.1
 # Largest accepted difference of a mass matrix from that of a rigid section, over the root of the product of
 # the two diagonal entries in its row and column.
 MOST_STRANGENESS = 1e-4
 # Largest accepted difference of M44 from M55 + M66, over M44: tables with three digits differ by 2e-3.
 MOST_EXCESS = 5e-3
-RIGID_MASS = "m on the diagonal, and m times the centre beside it; M44 = M55 + M66, and M45 = M46 = 0"
+RIGID_MASS = "M11 = M22 = M33, M15 = -M24, M16 = -M34 alone in rows 1 to 3; M44 = M55 + M66, M45 = M46 = 0"
 # Properties of the beam that are diagonal entries of the stiffness.
 _DIAGONAL = {
     "axial_stiffness": 0,
@@ -157,7 +158,7 @@ class SectionMatrices(FieldsOnly):
         least = least_eigenvalues(matrices)
         if (bad := np.flatnonzero(least <= LEAST)).size:
             k = bad[0]
-            bound = "its least eigenvalue, with a diagonal of 1, must be above {limit}"
+            bound = "its smallest eigenvalue, when scaled to a diagonal of 1, must be above {limit}"
             said = "such a section deforms without a force" if name == "stiffness" else "it has negative mass"
             remedy = f"{said}; check {_entries_at_fault(name, matrices[:, :, k])}"
             where = f" at x/L = {xi[k]:.4g}"

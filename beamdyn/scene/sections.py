@@ -138,7 +138,7 @@ def tip_inertia(tip: TipMass, twist: float) -> TipInertia:
 
 @lru_cache(maxsize=256)
 def weight_degree(beam: Beam) -> int:
-    """Find the highest polynomial degree that section properties add to integrals of deflections' products.
+    """Find the degree that section properties add, at most, to integrands with products of deflections.
 
     Each property adds its degree minus the order of the derivatives that it multiplies; the degree of
     tension is that of the mass plus two.

@@ -46,7 +46,7 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
 def refuse_bending_in_space(scene: Scene) -> None:
     """Refuse large deflection in space in analyses that model it in one plane only (an `InvalidValue`)."""
     if scene.bends_in_space:
-        bound = "this analysis has large deflection in one plane alone, in the plane of rotation or out of it"
+        bound = "this analysis models large deflection in one plane: in the plane of rotation or out of it"
         remedy = "leave large_deflection out where the deflection is small, or model one such plane"
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
 
@@ -104,7 +104,7 @@ def _warn_of_kinks(section: Rectangle, length: float) -> Iterator[Statement]:
     sharpest = float(section.kinks_of_width(length).max(initial=0.0))
     if (worth := _WORTH_OF_KINKS * sharpest) > _SMALL_WORTH:
         said = f"the slope of the width changes by {sharpest:.2g} at a kink, where functions of camber are "
-        end = f"smooth: frequencies are up to {percent(worth)} too high; round the kink to find out"
+        end = f"smooth: frequencies are up to {percent(worth)} too high; round the kink to compare"
         yield Statement(said, end, kind=LIMITS, quantity="change of the slope of the width", value=sharpest)
 
 
@@ -151,7 +151,7 @@ def warn_of_deflection(
     large = deflection > LARGE_DEFLECTION * length
     if large.any():
         ratio, at = deflection[large].max() / length, _at_speeds(speeds, large)
-        end = f": past {LARGE_DEFLECTION:g} of the length it is {OUTSIDE}"
+        end = f": past {LARGE_DEFLECTION:g} of the length the answer is {OUTSIDE}"
         yield _bent_too_far(ratio, f"the tip moves by {_say_lengths(ratio)}", at, end)
 
 

@@ -25,7 +25,7 @@ from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harves
 from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
-_DECADES = 4.0  # decades tried first on either side of 1/(omega C): first natural frequency, capacitance
+_DECADES = 4.0  # decades tried first to either side of 1/(first angular frequency * capacitance)
 _WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
 _DIGITS = 6  # largest number of digits of a resistance
 # Assumed ratio of the relative errors of resistance and power; it was at most 1 in each of 16 cases.

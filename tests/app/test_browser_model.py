@@ -51,5 +51,5 @@ def test_number_of_the_straight_beam_is_not_alone_and_automatic_physics_mends_it
     go(page, "Frequencies")
     expect(shown(page, "Up to date.")).to_be_visible()
     expect(frequency).to_contain_text("60.65")
-    expect(shown(page, 'physics "auto", for 0.001: large deflection (9.1 %')).to_be_visible()
+    expect(shown(page, 'physics "auto", tolerance 0.001: large deflection (9.1 %')).to_be_visible()
     expect(page.get_by_text(BEYOND).locator("visible=true")).to_have_count(0)

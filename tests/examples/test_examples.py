@@ -57,4 +57,4 @@ def test_chosen_physics_bends_the_harvester(finished, tmp_path):
         said = " ".join(finished(main(["modes", *arguments, "--speed", "100 rad/s"]), 0).out.split())
         assert "60.657" in said
         assert "55.62" not in said
-        assert 'physics "auto", for 0.001: large deflection' in said
+        assert 'physics "auto", tolerance 0.001: large deflection' in said

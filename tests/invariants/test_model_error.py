@@ -121,7 +121,7 @@ def test_a_mode_that_the_effect_turns_into_others_is_said_not_to_be_known() -> N
     modes = bd.natural_modes(bd.Scene(beam), 0.0, 2)
     np.testing.assert_array_equal(np.isnan(modes.left_out["twist"]), [False, True])
     np.testing.assert_array_equal(np.isnan(modes.model_error), [False, True])
-    assert "no single mode with it corresponds" in modes.left_out_effects.not_known["twist"]
+    assert "no single mode with the effect corresponds" in modes.left_out_effects.not_known["twist"]
 
 
 EFFECTS = (

@@ -238,7 +238,7 @@ BAD = [
     ({"psd": 1.0}, "by white noise are not finite"),
     ({"duration": 0.0}, "duration = 0"),
     ({"points": [(0.0006, 0.0)]}, "outside the section"),
-    ({"at": [0.2]}, "stations lie"),
+    ({"at": [0.2]}, "stations must lie"),
     ({"input": "across"}, "rigid"),
     ({"psd": bd.RoadRoughness("C"), "scene": replace(SCENE, motion=None)}, "rolling radius"),
     ({"scene": replace(SCENE, damping_ratio=0.0)}, "not damped"),

@@ -96,7 +96,7 @@ def test_steady_response_over_speed(run, tmp_path):
         (("--speed", "5 rad/s", "--t-end", "1 s"), BAD_INPUT, "give one of them"),
         (("--cycles", "strain"), BAD_INPUT, "--cycles belongs to a transient"),
         (("--speeds", "5 rad/s", "--angle", "90 deg"), BAD_INPUT, "--angle belongs to the equilibrium"),
-        (("--at", "80 mm"), BAD_INPUT, "stations lie from the root"),
+        (("--at", "80 mm"), BAD_INPUT, "stations must lie from the root"),
         (("--at", "10"), BAD_INPUT, "one unit at their end"),
         (("--points", "0.3:0 mm"), BAD_INPUT, "--points = 0.3 mm: it lies outside the section"),
         (("--points", "0.3 mm"), BAD_INPUT, "-0.1:0, 0.1:0 mm"),

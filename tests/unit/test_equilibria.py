@@ -237,7 +237,9 @@ def test_a_blade_that_coils_is_followed_to_an_angle_alone(monkeypatch: pytest.Mo
 
 def test_a_load_that_was_not_reached_says_how_much_of_it_was(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(continuation, "_MOST_TURNS", 0.1)
-    with pytest.raises(bd.NoEquilibrium, match=r"followed to 0\.\d+ of the load at its tip"):
+    with pytest.raises(
+        bd.NoEquilibrium, match=r"no equilibrium was found beyond 0\.\d+ of the load at the tip"
+    ):
         bd.equilibrium(replace(PUSHED, tip_load=bd.TipLoad((0.0, 1.0, 0.0))), 0.0)
 
 

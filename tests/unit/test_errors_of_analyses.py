@@ -146,7 +146,7 @@ def test_loads_of_a_tapered_strip_choose_physics_without_camber():
 def test_limits_of_a_bent_beam_are_not_known():
     limits = bd.setting_angle_limits(BENT, 100.0)
     assert np.isnan(limits.left_out[LARGE]).all()
-    assert "of a bent beam the loci have another shape" in limits.left_out_effects.not_known[LARGE]
+    assert "the loci of a bent beam have another shape" in limits.left_out_effects.not_known[LARGE]
 
 
 def test_frequencies_stand_for_matrices_and_backbones():

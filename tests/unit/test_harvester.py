@@ -59,7 +59,7 @@ def test_bad_layers_are_refused_with_key_value_bound_and_remedy():
     refused("harvester.poissons_ratio = 0.6", "at most 0.5", poissons_ratio=0.6)
     refused("rectangular section", beam=bd.Beam.from_stiffness(0.05, 0.0157, 1.3e-3))
     tapered = bd.Beam.rectangular(0.05, bd.Polynomial([0.02, -0.01]), 0.0002, 200e9, 7850.0)
-    refused("width = 0.01", "constant under the layers", "a beam of even width", beam=tapered)
+    refused("width = 0.01", "constant under the layers", "a beam of constant width", beam=tapered)
     refused("twist", beam=bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, twist=0.3))
 
 

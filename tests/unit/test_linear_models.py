@@ -217,7 +217,7 @@ def test_an_undamped_beam_is_warned_of():
 
 
 def test_a_record_with_a_gap_is_refused():
-    with pytest.raises(ValueError, match="times = 5 s: samples are missing since 2 s"):
+    with pytest.raises(ValueError, match="times = 5 s: samples are missing after 2 s"):
         bd.SampledTranslation([0, 1, 2, 5, 6], along_n2=[0.0] * 5)
 
 
@@ -253,7 +253,7 @@ BAD_RECORDS = {
     "no unit": ("t [s], n2\n0,1\n1,2\n", "line 1: expected a unit like [m/s2] for n2, found none"),
     "another unit": ("t [s], n2 [Hz]\n0,1\n1,2\n", "line 1: expected a unit like [m/s2] for n2, found [Hz]"),
     "missing cell": ("t [s], n2 [m/s2]\n0,1\n1,\n2,3\n", "line 3: expected a number for n2 [m/s2], found ''"),
-    "gap": ("t [s], n2 [m/s2]\n0,1\n1,1\n2,1\n5,1\n", "line 5: t = 5 s: samples are missing since 2 s"),
+    "gap": ("t [s], n2 [m/s2]\n0,1\n1,1\n2,1\n5,1\n", "line 5: t = 5 s: samples are missing after 2 s"),
     "late": ("t [s], n2 [m/s2]\n1,1\n2,1\n", "line 2: t = 1 s: a motion begins at t = 0"),
     "unknown": ("t [s], x [m]\n0,1\n1,1\n", "line 1: unknown column 'x'"),
     "backwards": ("t [s], n2 [m/s2]\n0,1\n2,1\n1,1\n", "line 4: t = 1 s: it follows 2 s"),

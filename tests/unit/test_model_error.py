@@ -102,7 +102,7 @@ def test_shear_and_camber_of_a_rectangle_are_estimated_by_assumed_ratios_which_a
     np.testing.assert_allclose(assumed.left_out[camber], largest.left_out[camber], rtol=1e-12)
     assert assumed.left_out_effects.assumed == {
         shear: "with Poisson's ratio 0.3 assumed",
-        camber: "with Poisson's ratio 0.5, not given; 0 % with 0",
+        camber: "with Poisson's ratio 0.5, as none is given; 0 % with ratio 0",
     }
     for said in assumed.left_out_effects.assumed.values():
         assert said in assumed.left_out_effects.sentence()
@@ -285,7 +285,7 @@ def test_an_unknown_effect_does_not_silence_a_large_one() -> None:
     (text,) = LeftOutEffects(
         {"shear": changes["shear"]}, {"shear": "another mode"}, {}, (), {}, (2,)
     ).warnings()
-    assert text == "the model error may exceed 1 %: what shear, left out, changes is not known: another mode"
+    assert text == "the model error may exceed 1 %: the change by shear, left out, is unknown: another mode"
 
 
 @pytest.mark.parametrize("command", [("modes", "--speed", "2 rad/s"), ("locus", "--speeds", "0:2:3 rad/s")])

@@ -123,7 +123,7 @@ def test_critical_speed_of_a_bent_beam_is_called_what_it_is():
     point = bd.critical_point(SCENE)
     assert "were the beam straight" in critical_label(point)
     assert critical_label(bd.critical_point(INWARD)) == "critical speed"
-    assert any("is not known" in said for said in warnings_of(point))
+    assert any("left out, is unknown" in said for said in warnings_of(point))
 
 
 def test_branch_without_large_deflection_is_said_to_be_left_out():

@@ -270,13 +270,13 @@ BENT = replace(MOVING, physics=bd.Physics(large_deflection=True), mount=replace(
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ({"at": [0.6]}, "at = 0.6 m: stations lie from the root, 0, to the tip, 0.5 m"),
-        ({"at": [-0.1]}, "at = -0.1 m: stations lie"),
+        ({"at": [0.6]}, "at = 0.6 m: stations must lie from the root, 0, to the tip, 0.5 m"),
+        ({"at": [-0.1]}, "at = -0.1 m: stations must lie"),
         ({"at": [0.2, 0.1]}, "must ascend"),
         ({"at": [0.1] * 3}, "twice for both sides"),
         ({"at": []}, "give 1 to"),
         ({"points": [(0.003, 0.0)]}, "points = 0.003 m: it lies outside the section"),
-        ({"points": [(0.0, 0.02)]}, "along its second direction the thinnest reaches 0.01 m"),
+        ({"points": [(0.0, 0.02)]}, "in the second direction the smallest one reaches 0.01 m"),
         ({"points": [0.001]}, "pairs"),
         ({"points": [(math.nan, 0.0)]}, "finite"),
         ({"youngs_modulus": -1.0}, "youngs_modulus"),

@@ -75,7 +75,7 @@ class Loading:
 
     @property
     def angles(self) -> np.ndarray:
-        """Slope angles (rows) along the beam by unit coordinates, the measure of changes of coordinates."""
+        """Slope angles at k positions along the beam per unit of each coordinate, (n, k)."""
         return self.elastica.beam.angles
 
     def at(self, q: np.ndarray, p: float) -> Work:
@@ -105,7 +105,7 @@ class Loading:
         try:
             return reach(growing, start_curve(growing, straight, 0.0, 1.0), [1.0])[0]
         except NotConverged as error:
-            said = f"the beam was followed to {error.args[1]:.3g} of the load at its tip, and not beyond"
+            said = f"no equilibrium was found beyond {error.args[1]:.3g} of the load at the tip"
             raise NoEquilibrium(said) from None
 
     @cached_property
@@ -198,7 +198,7 @@ def follow(
             yield replace(_find_between(load, point, following, lambda found: found.p_rate), p_rate=0.0)
         point, before = following, stability
         yield point
-        # The longest step changes slope angles by `longest` [rad], or the parameter by that part of it.
+        # The longest step changes slope angles by `longest` [rad], or the parameter by that fraction of it.
         size = max(_metric(load, point.q_rate, 0.0), 1 / (1 + abs(point.p) / load.scale))
         step = min(longest / size, 1.5 * step) if iterations <= easy else max(step / 2, _SHORTEST)
 
@@ -310,7 +310,10 @@ def _find_between(load: Loading, before: Point, after: Point, function: Callable
 
 
 def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tuple[np.ndarray, float, int]:
-    """Iterate to a solution, at fixed p or in the plane normal to a curve's direction at `point`."""
+    """Iterate to a solution, at fixed p or in the plane normal to a curve's direction at `point`.
+
+    Returns q, p and the number of iterations.
+    """
     last = np.nan  # no change is known yet, and comparisons with it are false
     for iteration in range(1, _ITERATIONS + 1):
         r, A = load.at(q, p)
@@ -324,7 +327,7 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
         # Convergence is at least linear: the next change is at most size**2 / last.
         ends = size < _CONVERGED or (size < _STALLED and size > last / 4)
         if ends or size**2 < _CONVERGED * last:
-            return q, p, iteration + (not ends)  # counts the omitted last one, as the step size depends on it
+            return q, p, iteration + (not ends)  # with the omitted one: it decides on step sizes
         last = size
     raise NotConverged
 

@@ -11,8 +11,8 @@ import scipy.linalg
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
-# Rounding errors in addition to those of `equations_of_motion`: ratios of the rounding errors of beams in two
-# planes, and of beams on root springs, to those of a clamped beam in one plane.
+# Ratios of the rounding errors of frequencies to those of a clamped beam in one plane: for beams in two
+# planes, and for beams on root springs.
 _TWO_PLANES, _ON_SPRINGS = 3.0, 2.0
 # Relative rounding error of stiffness entries, which matters where they cancel, as in pretwisted beams.
 _CANCELLED = 0.5 * _EPS

@@ -34,18 +34,19 @@ PLATE_TARGET = 1e-4  # smallest target for a strip as a plate, whose convergence
 _MOST_SEGMENTS = 200  # largest number of segments of a beam between its stations and breakpoints
 # Largest number of Ritz functions on all segments together: their eigenproblem takes about a second.
 _MOST_IN_ALL = 1000
-# Number of segments up to which piecewise polynomials need fewer functions than moments over the beam.
+# Largest number of segments with which polynomials on each segment need fewer functions than bending moments
+# that are polynomials along the whole beam.
 _FEW_SEGMENTS = 6
-_MANY_ON_EACH = 2  # number of modes per segment above which moments need more functions, and lose digits
-# Numbers of forces in each direction beyond the number of modes: a constant, those added to it per digit of
-# accuracy (both as published blades need), and the least sum, as with fewer the error of a mode that lacks
-# functions may be stated too small.  Twisted sections need fewer, because forces in both directions bend
-# them.
+_MANY_ON_EACH = 2  # number of modes per segment above which polynomials need fewer functions
+# Number of functions of the basis "moments" in each direction, minus the number of modes: a constant, the
+# number added per digit of accuracy (both found on published blades), and the smallest sum of the two.  With
+# fewer functions, the stated error of a mode may be too small.  Twisted sections need fewer, because a moment
+# in either direction bends them in both.
 _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
-# Smallest number of elements on a segment, so that the third of three meshes has a quarter as many on each;
-# and on one with a boundary layer, so that half as many resolve it too.
+# Smallest number of elements on a segment: enough for a mesh with a quarter of them, the coarsest of three;
+# and on a segment with a boundary layer: enough for a mesh with half of them to resolve the layer.
 _ON_EACH, _ON_LAYERS = 4, 8
-_SHORT = 0.02  # length of a segment as x/L below which elements of a quarter of it lose digits by rounding
+_SHORT = 0.02  # segment length x/L below which elements of a quarter of it have large rounding errors
 _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers
 # Largest ratio of all further changes of a critical speed to its change by the next finer model.
 _ALL_FURTHER = 2.0
@@ -99,7 +100,7 @@ def warn_of_missed_tolerance(error: float, tolerance: float) -> Iterator[Stateme
     if error > tolerance:
         yield Statement(
             f"tolerance = {tolerance:g} is not reached: the estimated relative error is {error:.1g}, "
-            "and the model is the largest that helps",
+            "and no larger model helps",
             kind=TOLERANCE,
             quantity="estimated relative error",
             value=error,
@@ -340,12 +341,14 @@ def check_discretization(discretization: object) -> None:
         raise InvalidValue("discretization", discretization, bound)
 
 
-# Decay lengths in a boundary layer, for a relative eigenvalue error of 1; -ln(error)/2 is added to it.
+# Length of a boundary layer in decay lengths: this number, minus half the logarithm of the allowed relative
+# error of an eigenvalue.
 _LENGTHS = 5.0
 # Longest boundary layers, over the length, that get separate functions.
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4
 _SHORTEST = 1e-4  # length of the shortest boundary layer, over the length of the beam
-# Breakpoints x/L added near the tip for a boundary layer whose length is unknown, like the speed.
+# Breakpoints x/L added near the tip to resolve a boundary layer when the speed, on which its length depends,
+# is not known.
 _TOWARD_TIP = (0.7, 0.95, 0.992)
 
 

@@ -97,7 +97,7 @@ class Eigensolver(ABC):
     @cached_property
     @abstractmethod
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        """Lowest squared angular frequency at rest plus the stiffness shift `pencil.shift` [rad2/s2]."""
 
     @property
     @abstractmethod
@@ -149,8 +149,8 @@ class Eigensolver(ABC):
 class Solver(Eigensolver):
     """Eigensolver by full matrices, which computes all modes.
 
-    For many speeds it uses coordinates in which K = diag(1 + speed^2 growth) - `pencil.shift` times the mass
-    matrix.
+    For many speeds it uses coordinates in which the stiffness is diag(1 + speed^2 growth), minus
+    `pencil.shift` times the mass matrix.
     """
 
     _factored: tuple[float, Factored | None] = np.nan, None  # the last speed [rad/s] with its factorization
@@ -172,17 +172,17 @@ class Solver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        """Lowest squared angular frequency at rest plus the stiffness shift `pencil.shift` [rad2/s2]."""
         return float(1 / np.linalg.eigvalsh(transformed(self._at_rest, self.pencil.M), UPLO="U")[-1])
 
     @property
     def softening(self) -> float:
-        """Largest relative loss of stiffness per squared speed [s2], from the smallest growth."""
+        """Largest relative loss of stiffness per squared speed [s2]; 0 if it is within rounding errors."""
         return self._softening[0]
 
     @property
     def critical_rounding(self) -> float:
-        """Relative rounding error of the critical speed, from that of the largest growth."""
+        """Relative rounding error of the critical speed, from that of the growth of the stiffness."""
         return self._softening[1]
 
     @cached_property
@@ -316,7 +316,11 @@ class Solver(Eigensolver):
     def _solve_graded(
         self, speed: float, count: int, basis: np.ndarray, condition: float
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute gyroscopic modes of a beam on root springs, in a `basis` with unit stiffness matrix."""
+        """Compute gyroscopic modes of a beam on root springs, in a `basis` with unit stiffness matrix.
+
+        `condition` is the condition number of the scaled stiffness, on which rounding errors depend.  Returns
+        eigenvalues, vectors (in columns) and rounding errors.
+        """
         M, C = (basis.T @ A @ basis for A in (self.pencil.M, speed * self.pencil.G))
         time = np.sqrt(np.trace(M) / len(M))
         inverse, y = solve_gyroscopic(M / time**2, C / time, np.ones(len(M)), count)
@@ -327,7 +331,9 @@ class Solver(Eigensolver):
 
 
 class LeadingSolver(Solver):
-    """Eigensolver of the first coordinates of a solver, the others held at 0: by blocks of its factors.
+    """Eigensolver for the first coordinates of another solver, with the other coordinates fixed at 0.
+
+    It reuses the leading blocks of the other solver's factors.
 
     Parameters
     ----------

@@ -115,8 +115,8 @@ def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
     """Find coordinates (n,) of the stable equilibrium that is bent to the opposite side of the one from rest.
 
     A transverse acceleration of the root pushes the beam to the opposite side, and is then removed.  The side
-    of the equilibrium from rest follows from the root's acceleration or, without one, from the sign of
-    `natural`.
+    to which the equilibrium from rest bends follows from the root's transverse acceleration or, without one,
+    from the sign of `natural`, a load per squared speed.
 
     Raises
     ------
@@ -245,7 +245,10 @@ class DeflectedSolver(Solver):
         return np.array([self._found[abs(v)] for v in speeds])
 
     def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> None:
-        """Find equilibria near another discretization's, of the same stability, at speeds that have them."""
+        """Store the equilibria that are close to those of another discretization, and as stable.
+
+        Speeds at which there is none are left out.
+        """
         for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
             near = self.elastica.nearest(guide.elastica, of_guide)
             with suppress(NotConverged):

@@ -170,7 +170,8 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
     if not model.scene.models_width:
         return 0.0
     kept = np.ones(model.equations.size, dtype=bool)
-    for name, functions in model.equations.sections:  # coordinates of the last function across come last
+    # The coordinates of the last function across the width are the last ones of a block.
+    for name, functions in model.equations.sections:
         end = model.equations.blocks[name].stop
         kept[end - functions.of_each : end] = False
     fewer = solver_of(model.equations, np.flatnonzero(kept)).eigenvalues(speeds, squared.shape[1])
@@ -182,8 +183,8 @@ def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) 
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     bound = (stiffness / mass).min() + model.equations.shift
-    # Errors of squares below the lowest square at rest are relative to it.  It need not be computed if the
-    # largest relative distance is not that of a square below the bound.
+    # Errors of squares below the lowest square at rest are relative to it.  The lowest square
+    # need not be computed if the largest relative distance is not that of a square below its bound.
     if is_needed := size.min() < _ABOVE * bound:
         relative, below = half / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))
@@ -283,7 +284,7 @@ def error_of_assumed_modes(
 
 
 def parts_of_distances(scene: Scene, discretization: Discretization) -> Parts:
-    """Choose fractions of distances that count as error, and a limit for margins, as in `REGULAR`."""
+    """Choose the three numbers by which distances between bases count as errors: see `REGULAR`."""
     if not discretization.converges_regularly:
         return _IRREGULAR
     if scene.models_width:

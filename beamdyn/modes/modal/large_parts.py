@@ -47,7 +47,7 @@ class LargeSolver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest [rad2/s2], plus `pencil.shift`."""
+        """Lowest squared angular frequency at rest plus the stiffness shift `pencil.shift` [rad2/s2]."""
         with suppress(ArpackNoConvergence):
             return float(1 / self._largest(self._at_rest, 1)[0][0])
         return self.dense.lowest_at_rest

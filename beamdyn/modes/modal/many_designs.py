@@ -146,7 +146,8 @@ class StackedSolver:
         time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]
         stiffness = (1 + spin * self.growth[design])[:, :, None]
         n = stiffness.shape[1]
-        # The square root of the mass matrix gives a damping ratio of 1/2, as the stiffness at rest is 1.
+        # The square root of the mass matrix, as damping matrix, gives each mode the ratio 1/2, because the
+        # stiffness at rest is the unit matrix.
         value, vector = np.linalg.eigh(self.mass)
         root = (vector * np.sqrt(np.maximum(value, 0.0))[:, None, :]) @ np.swapaxes(vector, 1, 2)
         B = np.zeros((len(design), 2 * n, 2 * n))

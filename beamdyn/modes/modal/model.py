@@ -66,7 +66,7 @@ class Model(FieldsOnly):
 
     def over(self, spaces: Spaces | None = None) -> Equations:
         """Build the equations of motion of the straight beam, in given functions or the discretization's."""
-        if self.scene.chooses_physics:  # that "auto" suits a curved axis is checked only here
+        if self.scene.chooses_physics:  # `Scene` does not check physics "auto" for a curved axis
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
@@ -74,7 +74,7 @@ class Model(FieldsOnly):
 
     @cached_property
     def coupling(self) -> dict[str, np.ndarray]:
-        """Moment of the layers by a unit voltage, per function of each field: see `coupling_of`."""
+        """Work of the piezoelectric layers' moment under unit voltage, per function of each field."""
         return coupling_of(self.scene.beam, self.equations.deflections, self.equations.sections)
 
     @cached_property
@@ -264,7 +264,8 @@ def bends(model: Model) -> bool:
 FEWEST_MODES = 2  # number of modes of the first basis, unless a number is given
 SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are searched
 _MOST_MODES = 60  # largest number of modes: with more, the fastest modes need too small steps
-_MASSLESS = 1e-14  # ratio of a mass pivot to the largest, below which it is 0 within rounding
+# Ratio of a pivot of the mass matrix to the largest pivot, below which it is 0 within rounding.
+_MASSLESS = 1e-14
 _DEPENDENT = 1e-10  # relative singular value below which mode shapes are linearly dependent
 
 
@@ -297,13 +298,13 @@ class ModalBasis:
         return self.speeds == (0.0,)
 
     def refined(self) -> ModalBasis | None:
-        """Add half as many modes again, at least two; None if that exceeds the largest allowed number."""
+        """Return a basis with half as many modes more, at least two; None if these are too many."""
         assert self.modes is not None
         modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None
 
     def with_one_more(self) -> ModalBasis | None:
-        """Add one mode; None if that exceeds the largest allowed number."""
+        """Return a basis with one mode more; None if these are too many."""
         assert self.modes is not None
         return replace(self, modes=self.modes + 1) if self.modes < _MOST_MODES else None
 
@@ -335,7 +336,7 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
 
 
 def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Equations:
-    """Add the residual flexibility of the neglected modes, at a speed [rad/s], to the capacitance."""
+    """Add the residual flexibility of neglected modes, at a speed [rad/s], to a harvester's capacitance."""
     circuit, kept = equations.circuit, reduced.circuit
     assert circuit is not None and kept is not None
     stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]

@@ -17,7 +17,7 @@ def solve_gyroscopic(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Solve M q'' + C q' + diag(d) q = 0 for skew-symmetric C and positive d: see `solve_general`.
 
-    Of each conjugate pair there is one, and there are the `count` lowest modes.
+    Only the `count` lowest modes are returned, each with one eigenvalue of its conjugate pair.
     """
     n, scale, count = len(d), 1 / np.sqrt(d), min(count, len(d))
     mu, U = np.linalg.eigh(scale[:, None] * M * scale)
@@ -49,7 +49,7 @@ def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.n
     s, y = s[finite], y[:, finite]
     least = _EPS * np.abs(s).max()
     none = np.flatnonzero(np.abs(s) < least)
-    s[none] = 1j * least * (-1.0) ** np.arange(len(none))  # two of them are one conjugate pair
+    s[none] = 1j * least * (-1.0) ** np.arange(len(none))  # replaces zeros by conjugate pairs
     return 1 / s, y
 
 

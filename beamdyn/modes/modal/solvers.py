@@ -92,7 +92,7 @@ class UncoupledSolver(Eigensolver):
 
     @cached_property
     def lowest_at_rest(self) -> float:
-        """Lowest squared angular frequency at rest of all blocks [rad2/s2], plus `pencil.shift`."""
+        """Lowest squared angular frequency at rest of all blocks plus the shift `pencil.shift` [rad2/s2]."""
         return min(solver.lowest_at_rest for solver in self.solvers)
 
     @property
@@ -297,7 +297,7 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    successor = mac.argmax(axis=2)  # successors of the modes, with the largest sum of MACs
+    successor = mac.argmax(axis=2)  # index at the next speed; the sum of MACs is largest
     unique = (np.sort(successor, axis=1) == np.arange(k)).all(axis=1)
     for s in np.flatnonzero(~unique):
         successor[s] = assign(-mac[s])

@@ -41,7 +41,7 @@ ASSUMED_POISSONS_RATIO = 0.3
 # Poisson's ratio assumed for sections without one: for camber the largest of uniform materials, as the change
 # rises with the ratio; for torsion a usual one, by which the frequency is known to 13 %.
 _ASSUMED_OF_SECTIONS = {
-    effects.CAMBER: (0.5, "with Poisson's ratio 0.5, not given; 0 % with 0"),
+    effects.CAMBER: (0.5, "with Poisson's ratio 0.5, as none is given; 0 % with ratio 0"),
     effects.TORSION: (ASSUMED_POISSONS_RATIO, f"with Poisson's ratio {ASSUMED_POISSONS_RATIO:g} assumed"),
 }
 MOST_CAMBER = "as if no section cambered, which is the most"
@@ -316,7 +316,7 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
     scale = _scale(M, K)  # functions of high order have large entries
     M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
     modes = (v / scale[:, None]).T
-    with np.errstate(divide="ignore", invalid="ignore"):  # singular equations have no mode
+    with np.errstate(divide="ignore", invalid="ignore"):  # singular equations give nan
         each = [_shift(M, C, K, at, x) for at, x in zip(s.tolist(), modes, strict=True)]
     return np.array(each, dtype=complex)
 

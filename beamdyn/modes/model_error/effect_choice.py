@@ -45,7 +45,7 @@ _SMALL = 0.1  # fraction of the tolerance below which an effect is not added
 _SOLVED = 0.1  # fraction of the tolerance to which the modes changed by effects are computed
 _MODES = 3  # number of modes by which the physics of a motion is chosen
 _SHORT = 0.2  # computing time [s] below which a result is computed twice, and the shorter time counts
-_ROUGH = 2.0  # largest relative change of a frequency, over the squared ratio of static deflection to length
+_ROUGH = 2.0  # largest relative change of a frequency by large deflection, over (deflection/length)^2
 _BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
 
@@ -216,7 +216,7 @@ def warn_of_peak(scene: Scene, deflection: float) -> Iterator[Statement]:
         yield Statement(
             f"physics = auto: the tolerance {choice.tolerance:g} is not met at the largest deflection: large "
             f"deflection, left out, changes frequencies by up to {100 * size:.2g} %, "
-            f"{_ROUGH:g} (deflection/length)^2",
+            f"estimated as {_ROUGH:g} (deflection/length)^2",
             kind=TOLERANCE,
             quantity="relative change by large deflection",
             value=size,
@@ -382,7 +382,10 @@ def choose_by(
 
 
 def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
-    """Add effects, except those in `barred`, until the other addable ones sum to half the tolerance."""
+    """Add effects, except those in `barred`, until the other addable ones are small in sum.
+
+    Their sizes then sum to at most half the tolerance, or each is below a tenth of it.
+    """
 
     def sizes(found: _Candidate) -> dict[str, float]:
         return {name: size for name, size in found.addable().items() if name not in barred}

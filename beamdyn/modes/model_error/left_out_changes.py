@@ -60,7 +60,7 @@ _NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not bu
 _BENT = Setting("physics", large_deflection=True, branch="bent")
 _BUCKLED = Words("the straight beam is unstable: ", _BENT, " bends it")
 _NOT_FOUND = "the equilibrium was not found"
-_LOST = "no single mode with it corresponds to a mode without it"
+_LOST = "no single mode with the effect corresponds to a mode without it"
 _UNSTABLE = "estimated for the straight beam, which is unstable"
 _STRAIGHT = "as of the straight beam"
 _STILL = "estimated for the straight beam, which does not deflect"

@@ -173,7 +173,7 @@ class LeftOutEffects:
         return Words("at ", list_speeds(speeds, unknown)) if unknown.any() else ""
 
     def _say_changes(self, what: str, where: str, speeds: np.ndarray | None) -> Iterator[str]:
-        """Yield the largest change by each effect, with the number of its value and the speed."""
+        """Yield the largest change by each effect, with the value (such as "mode 2") and speed concerned."""
         known = {name: change for name, change in self.changes.items() if np.isfinite(change).any()}
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
             change, notes = known[name], []
@@ -235,7 +235,7 @@ class LeftOutEffects:
                 unknown.setdefault((where_unknown(name) or where, why), []).append(name)
         for (place, why), names in unknown.items():
             begin = (place, " the model error") if place else ("the model error",)
-            said = f" may exceed {say_size(limit)}: what {', '.join(names)}, left out, changes is not known: "
+            said = f" may exceed {say_size(limit)}: the change by {', '.join(names)}, left out, is unknown: "
             end = said, why
             yield Statement(*begin, *end, kind=MODEL_ERROR, quantity="model error", limit=limit)
 

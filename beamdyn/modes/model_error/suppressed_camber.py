@@ -73,7 +73,7 @@ def warn_of_suppressed_camber(
     where = f" the strip is bent to {bent}"
     worth = (
         f": above 1 camber is suppressed in part: the strip is up to {percent(stiffer)} stiffer, its "
-        f"frequencies up to {percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here has that"
+        f"frequencies up to {percent(np.sqrt(1 + stiffer) - 1)} higher{assumed}; no model here includes it"
     )
     size = {"quantity": "Searle's parameter b^2 kappa/t", "value": searle[at, place]}
     yield Statement(say_when(int(at)), where, worth, kind=MODEL_ERROR, limit=_CAMBER_DECLINES, **size)

@@ -29,7 +29,8 @@ class MotionSample:
     Parameters
     ----------
     angle, speed, acceleration : ndarray
-        Angle theta about -n3 [rad], speed omega = theta' [rad/s], acceleration omega' [rad/s2].
+        Angle theta about -n3 [rad], n3 being the axis of rotation; speed omega = theta' [rad/s]; acceleration
+        omega' [rad/s2].
     carrier_acceleration : ndarray, shape (..., 3)
         Acceleration of the centre of the carrier along the fixed directions n1, n2, n3 [m/s2].
 
@@ -321,7 +322,10 @@ def _check_continuous(motion: Motion, name: str, unit: str, derivative_name: str
 
 
 def _find_worst_step(t: np.ndarray, f: np.ndarray, df: np.ndarray) -> tuple[float, float, int]:
-    """Find the step of f that differs most from the integral of df: misfit above tolerance, misfit, index."""
+    """Find the step of f that differs most from the integral of df, its supposed derivative.
+
+    Returns the misfit minus the allowed misfit, the misfit, and the index of the step.
+    """
     step = np.diff(t)
     misfit = abs(np.diff(f) - step * (df[1:] + df[:-1]) / 2)
     rounding = 16 * np.finfo(float).eps * (abs(f).max() + t[-1] * abs(df).max())

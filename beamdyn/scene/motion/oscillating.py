@@ -27,7 +27,7 @@ from beamdyn.scene.motion.rotations import Rotation, TurningMotion
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-_NEVER_STEADY = "pulsates, and has no steady state; simulate it, ask for its stability"
+_NEVER_STEADY = "pulsates, and has no steady state; simulate it, or compute its stability"
 _AXES = ("along_n1", "along_n2", "along_n3")
 
 
@@ -259,7 +259,7 @@ def check_record_times(name: str, given: Sequence[float] | np.ndarray) -> np.nda
     refuse(intervals <= 0, name, times[1:], "s", bound, remedy, limit=times[:-1])
     refuse(times[0] != 0, name, times[0], "s", "a motion begins at t = 0", f"subtract {times[0]:g} s")
     usual = float(np.median(intervals))
-    bound = f"samples are missing since {{limit}}: other intervals are {usual:.6g} s"
+    bound = f"samples are missing after {{limit}}: other intervals are {usual:.6g} s"
     remedy = "fill the gap, or cut the record there"
     refuse(intervals > _GAP * usual, name, times[1:], "s", bound, remedy, limit=times[:-1])
     return times

@@ -56,10 +56,10 @@ class RoadWave:
 
     wavelength: Annotated[float, Described("m", "lambda", "wavelength of the road", above=0)]
     velocity_amplitude: Annotated[
-        float | None, Described("m/s", "C", "amplitude of the wheel's vertical velocity; or height")
+        float | None, Described("m/s", "C", "amplitude of the wheel's vertical velocity; or give height")
     ] = None
     height: Annotated[
-        float | None, Described("m", "A", "amplitude of the road's height; or velocity_amplitude")
+        float | None, Described("m", "A", "amplitude of the road's height; or give velocity_amplitude")
     ] = None
 
     def __post_init__(self) -> None:
@@ -117,7 +117,8 @@ class RollingWheel(TurningMotion):
     speed : float or Rotation
         Constant speed [rad/s], or rotation of the wheel.
     road : RoadWave, optional
-        Road that moves the centre along n2, at the phase 2 pi R theta / lambda; flat if not given.
+        Road that moves the centre vertically, along n2, at the phase 2 pi R theta / lambda; flat if not
+        given.
 
     Raises
     ------
