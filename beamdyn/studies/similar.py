@@ -42,7 +42,7 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.sensitivities.changes import equations_near
 
-# Exponents of each input in mass per length, bending, axial and second bending stiffness.
+# Exponents with which each input enters mass per length, and bending, axial and second bending stiffness.
 POWERS = {
     "beam.width": (1, 1, 1, 3),
     "beam.thickness": (1, 3, 1, 1),
@@ -71,8 +71,8 @@ SIMILAR = {
     *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
     *_WITHOUT_EFFECT,
 }
-# Quantities on which the matrices depend as polynomials, with the degrees; on "angle" as trigonometric
-# polynomials.
+# Quantities on which the matrices depend, with the degree of the polynomial; in "angle" it is a trigonometric
+# polynomial.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
     **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
@@ -111,8 +111,9 @@ class SimilarDesigns(FieldsOnly):
     columns : mapping of str to ndarray, shape (N,)
         Inputs of each design.
     nodes : tuple of (str, tuple of float), optional
-        Values of each quantity between which matrices are interpolated, if the designs belong to a larger
-        set.
+        Values of each quantity between which matrices are interpolated.  They are given if the designs are a
+        part of a larger set, for whose extremes the matrices are assembled; otherwise they follow from the
+        designs.
     """
 
     reference: Scene

@@ -332,7 +332,7 @@ class _Request:
             _check_scenes(self.question.scene, self.others)
         question = self.question
         if question.what == "crossings" and question.tolerance is not None and not self.is_similar:
-            bound = "crossings of these designs are computed one by one, each as by resonance_speeds"
+            bound = "crossings of these designs are computed by resonance_speeds without a tolerance"
             raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:

@@ -208,7 +208,7 @@ class CurveComparison(SceneResult):
         return Speeds(at) if self.along == "speed" else number(at, "s" if self.along == "time" else "Hz")
 
     def _signed(self, k: int) -> str:
-        """State that curve k has the opposite sign of the computed one; empty text if it has not."""
+        """State that measured curve k has the opposite sign of the computed one; empty text otherwise."""
         if not self.is_turned[k]:
             return ""
         left = percent(float(self.rms_turned[k]))
@@ -232,7 +232,7 @@ class CurveComparison(SceneResult):
         lacking = "the numerical error is not known"
         if left_out > _VAIN:
             lacking = f"what the model leaves out ({percent(left_out)}) is more than the curve itself"
-        of_data = f"the data's uncertainty ({percent(own)} of the largest) and " if own > NOTHING else ""
+        of_data = f"the data's uncertainty ({percent(own)} of the maximum) and " if own > NOTHING else ""
         return {
             AGREES: f"within {of_data}the numerical error",
             LEFT_OUT: f"within what the model leaves out ({percent(left_out)})",
