@@ -385,7 +385,5 @@ def _warnings(scene: Scene, status: np.ndarray) -> Iterator[Statement]:
     """Yield warnings about the chart: neglected effects, and undecided points."""
     yield from warn_of_left_out(scene)
     if number := int((status == UNDECIDED).sum()):
-        said = (
-            f"at {counted(number, 'point')} of {status.size} errors leave the stability undecided: see status"
-        )
+        said = f"at {counted(number, 'point')} of {status.size} stability is undecided: see status"
         yield Statement(said, kind=TOLERANCE, quantity="undecided", value=number / status.size)
