@@ -89,9 +89,9 @@ def test_frequencies_and_uncertainties_may_be_in_radians_a_second(tmp_path):
         (("identify", SCENE, *MEASURED, "--free", ","), "give the unknown numbers"),
         (
             ("identify", SCENE, *MEASURED, "--free", "motion.rotation.speed"),
-            "the speeds are those of the data",
+            "a speed is given by the data",
         ),
-        (("identify", SCENE, *MEASURED, "--free", "speed=1:2 rpm"), "the speeds are those of the data"),
+        (("identify", SCENE, *MEASURED, "--free", "speed=1:2 rpm"), "a speed is given by the data"),
         (
             ("identify", SCENE, *MEASURED, "--free", "motion.duration"),
             '--free = "motion.duration": it is no number',
