@@ -207,7 +207,7 @@ class SteadyResponse(StatesModelError):
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
         """Compute the tip deflection [m] at phases of rotation and road [rad]: (speeds, phases).
 
-        Direction 0 is that of the bending angle at the root, direction 1 is across.
+        Direction 0 is the direction of bending at the root; 1 is perpendicular to it and to the axis.
         """
         rotation, road = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([rotation, road]), axes=1)

@@ -172,8 +172,8 @@ def _balance(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Scale overdamped modes so that their coupling to other modes is equal in both directions.
 
-    With the scale of oscillating modes, the slow decay of a circuit with a large resistance would act on all
-    others by discs that grow with that resistance.
+    Scaled like oscillating modes, the slowly decaying mode of a circuit with a large resistance would enlarge
+    the Gershgorin discs of all other modes in proportion to that resistance.
     """
     parts = (np.abs(f).sum(axis=(1, 2))[:, None, None] * np.abs(v) for f, v in V)
     size = reduce(np.add, parts) * (1 - np.eye(sigma.shape[1]))
@@ -368,7 +368,7 @@ class _Resonance:
     def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:
         """Build Hill's matrix for the harmonics within a number of interactions, and count its inner rows.
 
-        Inner rows, which come first, are those of the harmonics within one interaction less.  Harmonics that
+        Inner rows, which come first, are those of the harmonics within one interaction fewer.  Harmonics that
         differ by one of frequency 0 (commensurate rates) are merged; `phase` is that harmonic's phase [rad].
         """
         levels = generate_harmonics(self.harmonics, self.coupling, interactions)
@@ -381,7 +381,7 @@ class _Resonance:
         return hill, len(inner) * len(self.sigma)
 
     def _fold(self, h: Pair) -> Pair:
-        """Return the representative of harmonics that differ from h by multiples of the stationary one."""
+        """Return the representative of harmonics that differ from h by multiples of `stationary`."""
         if self.stationary is None:
             return h
         (j, k), (a, b) = h, self.stationary

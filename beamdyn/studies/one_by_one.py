@@ -158,7 +158,7 @@ def _answer_critical_speed(question: StudyQuestion, scene: Scene, _: np.ndarray)
 
 
 def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
-    """Find the lowest crossing of each mode with each excitation line."""
+    """Find the lowest speed at which each mode crosses each excitation line."""
     found = resonance_speeds(scene, question.speed, question.modes, 1, question.discretization)
     keys, lowest = [crossing_key(each) for each in found], dict[Any, Any]()
     for key, crossing in zip(keys, found, strict=True):  # by ascending speed: the first one counts

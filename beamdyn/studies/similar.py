@@ -404,7 +404,10 @@ def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
 
 
 def _weights_of(name: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Compute interpolation weights at x, in rows: functions that are 1 at one of p nodes, else 0."""
+    """Compute the weights (len(x), p) with which values at p nodes are interpolated at x.
+
+    A weight is 1 at its own node, and 0 at the other nodes.
+    """
     if name == "angle" and len(nodes) > 1:
         return (1 + 2 * np.cos(2 * (x[:, None] - nodes))) / 3
     values = np.ones((len(x), len(nodes)))

@@ -81,7 +81,7 @@ def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str
 
 
 def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, speed: float) -> SolvedValues:
-    """Estimate the largest deflection, if large ones are modelled, by static equilibrium and backbone curve.
+    """Estimate the largest deflection of a nonlinear model, from static equilibrium and backbone curve.
 
     The static part is the equilibrium deflection at the largest speed.  The vibration changes in proportion
     to the first mode's compliance: by -2 times the relative change of its frequency.

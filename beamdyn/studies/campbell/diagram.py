@@ -339,7 +339,7 @@ def _check_speeds(speeds: np.ndarray | Sequence[float]) -> np.ndarray:
 def _check_operation(
     speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
 ) -> tuple[float | None, tuple[float, float] | None]:
-    """Return the rated speed and the operating range; raise an error outside the speeds of the diagram."""
+    """Return rated speed and operating range; raise an error if they exceed the speeds of the diagram."""
     if rated is not None:
         rated = _within_speeds("rated", positive("rated", rated, "rad/s"), speeds)
     if operating is None:
