@@ -15,7 +15,7 @@ import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.harvests import HarvestPanel, panel_size, plot_harvest, plot_harvest_panels
-from beamdyn.common.results.one_line import error_at_most, number, states, warned
+from beamdyn.common.results.one_line import counted, error_at_most, number, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import LIMITS, Statement, announced, unannounced
@@ -118,7 +118,7 @@ class Harvest(SceneResult, JudgedByRepeating):
     def headline(self) -> Iterator[str]:
         """Yield the largest power, its speed and its error for a one-line summary; see `Result.headline`."""
         at, most = self.best
-        yield f"{len(self.speeds)} speeds, {self.say_speed(self.speeds)}"
+        yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}"
         yield f"up to {number(most, 'W')} at {self.say_speed(at)}"
         yield from (error_at_most(self.total_error), states(self.status, ("stable",)), warned(self.warnings))
 

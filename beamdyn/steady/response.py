@@ -137,7 +137,7 @@ class SteadyResponse(StatesModelError):
     def headline(self) -> Iterator[str]:
         """Yield speeds, largest amplitude and error for a one-line summary; see `Result.headline`."""
         largest = self.say_length(np.nanmax(self.amplitude, initial=0.0))
-        yield f"{len(self.speeds)} speeds, {self.say_speed(self.speeds)}: up to {largest}"
+        yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}: up to {largest}"
         yield f"harmonics' {error_at_most(self.error)}"
         yield from (states(self.status, ("stable",)), warned(self.warnings))
 
@@ -327,7 +327,7 @@ class ResponseRequest(FieldsOnly):
         line, share = add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
         vibrated = _largest(vibrating, harmonic, stable)
         about = " about the equilibrium at each speed" if scene.physics.large_deflection else ""
-        method = f"{self.model.discretization}, {self.basis}{about}, {len(used)} harmonics"
+        method = f"{self.model.discretization}, {self.basis}{about}, {counted(len(used), 'harmonic')}"
         estimated = "without the harmonics that the last product with the stiffness adds"
         without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(

@@ -97,7 +97,7 @@ def identify(
     doubts = tuple(doubts_of_unit(measured_rows(scene, data)))
     paired = int((found.pairs != NO_MODE).sum())
     if paired < len(numbers):
-        bound = f"only {paired} of {data.count} frequencies are near modes, for {len(numbers)} unknowns"
+        bound = f"only {paired} of {data.count} frequencies are near modes; unknown numbers: {len(numbers)}"
         remedy = "begin with a scene that is nearer to the data, or give other bounds"
         raise InvalidValue("free", ", ".join(free), bound, "; ".join((*doubts, remedy)))
     return _Told(found, known, doubts).result(start)
