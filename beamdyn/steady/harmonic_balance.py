@@ -181,13 +181,13 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     """
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
-    if system.is_free(np.array(harmonics)).any():  # no stiffness: no static compliance
+    if system.is_free(np.array(harmonics)).any():  # a coordinate without stiffness has no static compliance
         return response, settled
     try:
         mean = MeanModes.of_system(system)
     except np.linalg.LinAlgError:
         return response, settled
-    half = [h for h in harmonics if h >= (0, 0)]  # those of -h are the complex conjugates
+    half = [h for h in harmonics if h >= (0, 0)]  # harmonics -h of the response are complex conjugates
     with np.errstate(all="ignore"):  # the series may diverge, or a harmonic may be in resonance
         series = _Series.of_system(system, mean, half)
         y = series.load * series.compliance

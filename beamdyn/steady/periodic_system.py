@@ -88,10 +88,9 @@ class PeriodicSystem:
         return ~stiff
 
     def is_free(self, harmonics: np.ndarray) -> np.ndarray:
-        """Return whether a coordinate has no stiffness, and a harmonic the frequency 0.
+        """Mark harmonics of frequency 0 of coordinates without stiffness: shape (S, harmonics, coordinates).
 
-        Such a static part of the response is arbitrary, and is set to 0.  The result has the shape
-        (S, harmonics, coordinates).
+        These static parts of the response are arbitrary, and are set to 0.
         """
         return (self.rates @ harmonics.T == 0)[..., None] & self.without_stiffness
 
@@ -335,8 +334,8 @@ def excitation_lines(
     motion : Motion or None
         The motion, which names the lines.
     order : int
-        Largest number of factors in a line: 1 gives the lines of the load and of the stiffness; n also those
-        that up to n - 1 products of these with the periodic stiffness add.
+        Order of the lines: 1 for the lines of the load and of the stiffness; n also for those that up to n -
+        1 products of these with the periodic stiffness add.
 
     Returns
     -------

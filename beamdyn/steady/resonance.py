@@ -109,7 +109,7 @@ def resonance_speeds(
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = choose_physics(scene.undamped, [0.0, top], modes, tolerance)
     model = model_to_tolerance(scene, discretization, ends := np.array([0.0, top]), modes, tolerance)
-    sprung = discretization == "fem" and model.equations.shift  # elements may not resolve these springs
+    sprung = discretization == "fem" and model.equations.shift  # elements may not resolve springs at the root
     if sprung and not np.isfinite(solve_with_error(model, ends, modes).error).all():
         model = choose_model(scene, "ritz", ends, modes)
     critical = model.solver.critical_speed
@@ -316,7 +316,7 @@ class _Loci:
     def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:
         """Describe in a sentence that a line equals a natural frequency at every speed."""
         modes = " and ".join(f"mode {number}" for number in sorted({int(self.numbers[i]) for i in indices}))
-        return f"{modes} and the line {line.name} ({kind}) resonate at every speed, which is no crossing"
+        return f"{modes} and the line {line.name} ({kind}) resonate at every speed, so there is no crossing"
 
     def _detunings(self, line: Line, indices: tuple[int, ...]) -> np.ndarray:
         """Compute a frequency, or the sum of two, minus a line [rad/s], at the speeds of the locus."""

@@ -36,8 +36,8 @@ _CHECKED = 64  # number of times at which the equations are checked
 _NEGLIGIBLE = 1e-2  # fraction of the accuracy allowed for the sum of all neglected terms
 _RESOLVED = 12.0  # phase per step [rad] up to which the nodes of a step resolve an exponential
 _MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
-# Exponentials at a batch of this number squared of steps are products of two small sets of exponentials: at
-# this number of successive steps, and at as many multiples of this number of steps.
+# A batch has the square of this number of steps: its exponentials are products of those at this number of
+# successive steps, and those at as many multiples of this number.
 _ROWS = 32
 
 

@@ -74,7 +74,7 @@ class StepSize:
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
         # The modes above this number together have an error below a quarter of the bound.
         modes = int((cumulative > bound / 4).sum())
-        if modes > self.modes:  # steps may become longer: they need to resolve these modes only
+        if modes > self.modes:  # resolve more modes, no more accurately than the highest needs
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
             return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), modes)
         shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / order))

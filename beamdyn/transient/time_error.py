@@ -215,7 +215,7 @@ def local_errors(
     n = len(frequencies)
     residual = np.einsum("kij,kj->ki", step, state) - end_state
     size = np.einsum("kij,kj->ki", np.abs(step), np.abs(state))
-    residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding errors are random: no sum over steps
+    residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding errors are random: they do not add up
     error = np.abs(np.einsum("kij,kj->ki", fine - step, state)) + np.abs(residual)
     return np.hypot(error[:, :n], error[:, n:] / frequencies)
 

@@ -406,9 +406,9 @@ class TransientRequest(TransientProblem):
 
 
 def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator[Statement]:
-    """Warn if a modal truncation error, relative to the largest deflection (inf: unknown), is too large.
+    """Warn if the modal truncation error, relative to the largest deflection, exceeds the tolerance.
 
-    The argument `basis` describes the modal basis in words.
+    The error is inf if it is not known; the argument `basis` describes the modal basis in words.
     """
     size = f"{error:.2g} of the largest deflection" if np.isfinite(error) else "not known"
     more = "and more modes would take too long or too much memory; a sudden motion excites very many: "
@@ -419,7 +419,7 @@ def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator
 
 
 def _warn_of_missed(what: str, error: float, tolerance: float, said: str, remedy: str) -> Iterator[Statement]:
-    """Warn if an error, relative to the largest deflection, is too large; the text `said` states its size."""
+    """Warn if an error, relative to the largest deflection, exceeds the tolerance; `said` states its size."""
     if error > tolerance:
         yield Statement(
             f"tolerance = {tolerance:g} is not reached: the estimated {what} is {said}",

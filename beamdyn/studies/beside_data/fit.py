@@ -275,8 +275,8 @@ def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fi
 def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> Fitted:
     """Return the best of several fits with different starts.
 
-    The starts are the best of several candidates: the scene's own numbers, and random ones, four for each
-    start.  The best candidates are those with the smallest sum of squared residuals.
+    The starts are the best of several candidates: the scene's own numbers, and random ones.  The best have
+    the fewest frequencies without a mode, and among these the smallest sum of squared residuals.
 
     Parameters
     ----------

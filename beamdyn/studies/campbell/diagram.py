@@ -426,7 +426,7 @@ def _warnings(named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence
         yield from (after(_prefix(label), warning) for warning in locus.warnings)
         for line, mode in line_crossings.coincident(locus, lines):
             both = f"{names[mode]} and {line.name}"
-            yield f"{_prefix(label)}{both} coincide at every speed, which is no crossing"
+            yield f"{_prefix(label)}{both} coincide at every speed, so there is no crossing"
 
 
 def _prefix(label: str) -> str:

@@ -47,8 +47,8 @@ from beamdyn.studies.study import VERSIONS
 _NAMES = "status", "rate", "error", "radius", "period"
 _TASK = 16  # number of scenes in a task
 _JUDGED = 3  # number of values of each number at which the model error is computed
-# Largest relative variation over the chart with which ratios of phase rates count as constant; and also
-# products of the period and a number.
+# Largest relative variation with which ratios of phase rates, and products of the period and a number, count
+# as constant over the chart.
 _ROUNDING = 1e-12
 _MOST_ENTRIES = 20_000_000  # largest total number of entries of all matrices, so that they fit into memory
 
