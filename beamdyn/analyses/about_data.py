@@ -161,7 +161,7 @@ def identify(
 def _untold(found: bd.Identification) -> str:
     """Name the parameters that the data do not determine; empty if the data determine all of them."""
     lost = [name for name, value in zip(found.names, found.value, strict=True) if np.isnan(value)]
-    return f"the data do not tell {' and '.join(lost)}: see what would help" if lost else ""
+    return f"the data do not determine {' and '.join(lost)}: see what would help" if lost else ""
 
 
 def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None:

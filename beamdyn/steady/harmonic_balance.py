@@ -4,18 +4,19 @@ The response q = sum_h q_h exp(i (j theta + k chi)), h = (j, k), is a function o
 `PeriodicSystem`; d/dt becomes i Omega_h with Omega_h = j nu_1 + k nu_2.  Whether nu_1 / nu_2 is rational does
 not matter: the solution covers every phase difference at once.
 
-The equations determine which harmonics are kept: those of the load, then those that their products with
-the periodic coefficients (interactions) add once, twice, and so on.
+The equations determine which harmonics are kept: those of the load, then those that are added when these are
+multiplied by the periodic coefficients (an interaction) once, twice, and so on.
 
 They are solved as a series, whose terms add one interaction each.  In the modes of the mean equations,
 without damping, there is one equation for each harmonic h of each mode a:
 
-    (k_a - Omega_h^2 + i Omega_h c_aa) y_ha = f_ha - (what couples it with other harmonics and modes)
+    (k_a - Omega_h^2 + i Omega_h c_aa) y_ha = f_ha - (terms that couple it with other harmonics and modes)
 
-The coupling by the periodic coefficients and by damping is weak, relative to the factor on the left, except
-near a resonance.  So the equations are solved iteratively, with the last response on the right-hand side:
-each iteration multiplies the error by the ratio of coupling to factor, some 1e-3, and a few reach rounding
-error.
+with the modal stiffness k_a, damping c_aa, response y_ha and load f_ha for unit modal mass.  The coupling
+terms come from the periodic coefficients and from damping; they are small, relative to the factor in brackets
+on the left, except near a resonance.  So the equations are solved iteratively, with the response of the
+previous iteration in the coupling terms: each iteration multiplies the error by the ratio of the coupling to
+that factor, some 1e-3, so that a few iterations reach rounding error.
 
 In shapes of arrays, H counts harmonics, n coordinates, S speeds, and N samples of a phase.
 """
@@ -33,7 +34,8 @@ _MOST_ENTRIES = 10**7  # number of matrix entries in memory when equations are s
 # Largest number of terms of the series: enough to converge if each term divides the error by 20.
 _MOST_TERMS = 12
 _SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
-# Fraction of converged pairs of phase rates above which the arrays are copied without them, to save time.
+# Smallest fraction of pairs of phase rates that have converged for which the arrays are copied without these
+# pairs: copying takes time, too.
 _WORTH_LEAVING_OUT = 0.25
 
 
@@ -47,7 +49,7 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
     system : PeriodicSystem
         The equations at S pairs of phase rates [rad/s].
     harmonics : sequence of pair, length H
-        Harmonics to keep; with each, its opposite.
+        Harmonics (j, k) to keep; for each, the opposite (-j, -k) must also be in the sequence.
 
     Returns
     -------
@@ -63,7 +65,10 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
 
 
 def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
-    """Solve for the given harmonics of the response by one matrix for all, at each pair of phase rates."""
+    """Solve for given harmonics of the response by one linear system for all of them, without a series.
+
+    Arguments and result are those of `solve_harmonic_balance`.
+    """
     T = _real_basis(harmonics)
     A, b = _assemble(system, harmonics, T)
     try:
@@ -77,14 +82,14 @@ def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarr
 
 
 def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: Pair = (0, 0)) -> np.ndarray:
-    """Build the matrices that multiply harmonics by a function of the phases with a given spectrum.
+    """Build the matrices that convert the harmonics of a factor to those of its product with a function.
 
     Parameters
     ----------
     spectrum : ndarray of complex, shape (S, samples, samples)
-        Harmonics of the function.
+        Harmonics of the function, which depends on the two phases.
     harmonics : sequence of pair, length H
-        Harmonics of the other factor, and of the product.
+        Harmonics (j, k) of the factor (columns of the matrices), and of the product (rows).
     shift : pair
         Offset: the entry (h, h') of a matrix is the harmonic h - h' + shift of the spectrum.
 
@@ -115,8 +120,10 @@ def _assemble(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Assemble real equations of harmonic balance for the cosine and sine parts of all harmonics.
 
-    Blocks of a harmonic are K - Omega_h^2 M and i Omega_h C; the periodic coefficients couple harmonics.
-    T is the matrix of `_real_basis`.
+    The diagonal block of a harmonic h is K - Omega_h^2 M + i Omega_h C; the periodic coefficients couple
+    different harmonics.  The matrix T of `_real_basis` makes the equations real.
+
+    Return the matrices, shape (S, H n, H n), and the right-hand sides, shape (S, H n).
     """
     h = np.array(harmonics)
     S, H, n = len(system.rates), len(h), system.size
@@ -144,7 +151,10 @@ def _assemble(
 
 
 def _add_products(A: np.ndarray, factors: np.ndarray, matrices: np.ndarray) -> None:
-    """Add matrices (S, n, n) times a factor for each pair of harmonics (S, H, H), most of which are 0."""
+    """Add matrices (S, n, n) to the blocks of A, (S, H, n, H, n), times a factor for each pair of harmonics.
+
+    Most of the factors (S, H, H) are 0.
+    """
     row, column = np.nonzero(factors.any(axis=0))
     A[:, row, :, column] += factors[:, row, column].T[..., None, None] * matrices
 
@@ -160,24 +170,24 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     system : PeriodicSystem
         The equations at S pairs of phase rates [rad/s].
     harmonics : sequence of pair, length H
-        Harmonics to keep; with each, its opposite.
+        Harmonics (j, k) to keep; for each, the opposite (-j, -k) must also be in the sequence.
 
     Returns
     -------
     response : ndarray of complex, shape (S, H, coordinates)
-        Harmonics q_h of the response; nan where the series has not settled.
+        Harmonics q_h of the response; nan where the series has not converged.
     settled : ndarray of bool, shape (S,)
-        Whether the series has settled to rounding error.
+        Whether the series has converged to rounding error.
     """
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
-    if system.is_free(np.array(harmonics)).any():  # without stiffness there is no static compliance
+    if system.is_free(np.array(harmonics)).any():  # a coordinate without stiffness has no static compliance
         return response, settled
     try:
         mean = MeanModes.of_system(system)
     except np.linalg.LinAlgError:
         return response, settled
-    half = [h for h in harmonics if h >= (0, 0)]  # the harmonics with opposite sign are complex conjugates
+    half = [h for h in harmonics if h >= (0, 0)]  # harmonics -h of the response are complex conjugates
     with np.errstate(all="ignore"):  # the series may diverge, or a harmonic may be in resonance
         series = _Series.of_system(system, mean, half)
         y = series.load * series.compliance
@@ -200,7 +210,10 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
 
 
 def _size(y: np.ndarray) -> np.ndarray:
-    """Compute the magnitudes of responses (harmonics, modes, S), one for each of S pairs of phase rates."""
+    """Compute one magnitude (S,) of the response y (harmonics, modes, S) for each pair of phase rates.
+
+    It is the sum of the magnitudes of all real and imaginary parts.
+    """
     return (np.abs(np.real(y)) + np.abs(np.imag(y))).sum(axis=(0, 1))
 
 
@@ -217,7 +230,8 @@ class _Products:
     factors : tuple of ndarray, shape (S,)
         Complex amplitudes of the harmonics of the periodic coefficient.
     places : tuple of (ndarray, ndarray)
-        For each factor, indices of products among the H harmonics, and of their sources among these and the
+        For each factor, the indices of the harmonics to which its products contribute, among the H harmonics;
+        and the indices of the harmonics that it multiplies, among the H harmonics followed by their
         conjugates.
     """
 
@@ -230,7 +244,10 @@ class _Products:
     def of(
         cls, order: int, spectrum: np.ndarray, matrix: np.ndarray, mean: MeanModes, harmonics: list[Pair]
     ) -> _Products:
-        """Build the products of one spectrum and its matrices with given harmonics of the response."""
+        """Build the products of a periodic coefficient, given by spectrum and matrices, with the response.
+
+        The response has the given harmonics, of which none is the opposite of another.
+        """
         index = {h: i for i, h in enumerate(harmonics)}
         for (j, k), i in tuple(index.items()):
             index.setdefault((-j, -k), len(harmonics) + i)
@@ -248,7 +265,10 @@ class _Products:
         return replace(self, matrix=self.matrix[..., chosen], factors=factors)
 
     def sum(self, both: np.ndarray, count: int) -> np.ndarray:
-        """Sum the forces on `count` harmonics by all harmonics and their conjugates, stacked in `both`."""
+        """Sum the products with all harmonics of the response and their conjugates: forces (H, n, S).
+
+        The array `both`, (2 H, n, S), has the H = `count` harmonics and then their conjugates.
+        """
         product = np.zeros((count, *both.shape[1:]), dtype=complex)
         for factor, (to, source) in zip(self.factors, self.places, strict=True):
             product[to] += factor * both[source]
@@ -281,7 +301,7 @@ class _Series:
 
     @classmethod
     def of_system(cls, system: PeriodicSystem, mean: MeanModes, harmonics: list[Pair]) -> _Series:
-        """Build the series for harmonics of which none is the opposite of another."""
+        """Build the series for harmonics of which none is the opposite of another, in the modes `mean`."""
         h, C = np.array(harmonics), system.mean[1]
         rate = 1j * (h @ system.rates.T)[:, None]
         damping = mean.transform(C) if C.any() else None
@@ -307,7 +327,7 @@ class _Series:
         return _Series(load, compliance, rate, damping, products)
 
     def respond(self, y: np.ndarray) -> np.ndarray:
-        """Compute the response to the load, and to coupling terms of the last response y."""
+        """Compute the response to the load and to the coupling terms, which the last response y gives."""
         force, both = self.load.copy(), np.concatenate([y, y.conj()])
         for products in self.products:
             of_rate = np.concatenate([self.rate, -self.rate]) if products.order else 1.0
@@ -318,7 +338,7 @@ class _Series:
 
 
 def _multiply(matrix: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Multiply the matrix (n, n, S) with the response y (harmonics, n, S), for each pair of phase rates."""
+    """Multiply the matrix (n, n, S) by the response y (harmonics, n, S), for each pair of phase rates."""
     total = np.empty_like(y)
     for row, out in zip(matrix, np.moveaxis(total, 1, 0), strict=True):
         out[:] = (row * y).sum(axis=1)

@@ -15,7 +15,7 @@ import numpy as np
 
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.plots.harvests import HarvestPanel, panel_size, plot_harvest, plot_harvest_panels
-from beamdyn.common.results.one_line import error_at_most, number, states, warned
+from beamdyn.common.results.one_line import counted, error_at_most, number, states, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import LIMITS, Statement, announced, unannounced
@@ -42,11 +42,12 @@ from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
 from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 
-# Ratio of the error to the largest difference from responses with more modes, and number of such responses:
-# voltages of electrodes that end within the span converge irregularly, so that two may agree by chance.
+# Ratio of the estimated error to the largest difference from responses with more modes, and number of these
+# responses: voltages of electrodes that end within the span converge irregularly, so that two responses may
+# agree by chance.
 _DISTANCE, _LARGER = 2.0, 3
 _RESONANT = 3  # number of modes whose resonances are listed
-_COMPARED = "with more modes, and without the harmonics of the last interaction"
+_COMPARED = "with more modes, and without the harmonics that the last product with the stiffness adds"
 _POWER = "mean power [W]"
 
 
@@ -117,7 +118,7 @@ class Harvest(SceneResult, JudgedByRepeating):
     def headline(self) -> Iterator[str]:
         """Yield the largest power, its speed and its error for a one-line summary; see `Result.headline`."""
         at, most = self.best
-        yield f"{len(self.speeds)} speeds, {self.say_speed(self.speeds)}"
+        yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}"
         yield f"up to {number(most, 'W')} at {self.say_speed(at)}"
         yield from (error_at_most(self.total_error), states(self.status, ("stable",)), warned(self.warnings))
 
@@ -132,7 +133,7 @@ class Harvest(SceneResult, JudgedByRepeating):
 
     @property
     def total_power(self) -> np.ndarray:
-        """Mean power into the load [W], including the power by a random road."""
+        """Mean power into the load [W] at each speed, including the power that a random road adds."""
         return self.power if self.road is None else self.power + self.road.power
 
     @property
@@ -160,12 +161,12 @@ class Harvest(SceneResult, JudgedByRepeating):
         return electrodes_of(self.scene).harvester.strain_limit
 
     def judged(self, found: Harvest) -> np.ndarray:
-        """Return the largest power, for which the model error is stated: shape ()."""
+        """Return the largest power of the result `found`, for which the model error is stated: shape ()."""
         return np.array(found.best[1])
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments that limit a repeated analysis to the power, without its error."""
+        """Arguments for repeating the analysis for the model error, without numerical errors of the power."""
         return {"compared": False}
 
     @property
@@ -174,7 +175,7 @@ class Harvest(SceneResult, JudgedByRepeating):
         return float(np.abs(self.speeds).max())
 
     def plot(self, ax: Axes | None = None) -> Axes:
-        """Plot the power over speed, with the resonances, and the power by a random road."""
+        """Plot the power over speed, with the resonances, and the power that a random road (if any) adds."""
         curves = {"harvested": self.power}
         if self.road is not None:
             curves = {"by steady motion": self.power, "by a random road": self.road.power}
@@ -198,7 +199,7 @@ class Harvest(SceneResult, JudgedByRepeating):
 
     @property
     def _panels(self) -> list[HarvestPanel]:
-        """Quantities of the plot, each with curves by steady motion and by a random road."""
+        """Panels of the plot (power, voltage, strain), with curves of steady motion and of a random road."""
 
         def panel(label: str, steady: np.ndarray, name: str, limit: float = math.inf) -> HarvestPanel:
             curves = {"steady motion: mean power, else largest": steady}
@@ -270,13 +271,17 @@ def harvested(
     road: RoadRoughness | None,
     compared: bool = True,
 ) -> Harvest:
-    """Compute the result of `harvest`, from its arguments; its errors are nan unless it is `compared`."""
+    """Compute the result of `harvest` from its arguments.
+
+    Unless `compared` is true, there is no comparison with models of more modes, and the errors are nan.
+    """
     start = perf_counter()
     powers = _powers(scene, speeds, modes, tolerance, discretization, road, compared)
     resonances = _resonances(powers.scene, powers.speeds)
-    provenance = Provenance.since(start, powers.provenance.method, _COMPARED)  # time of resonances included
+    # The computing time includes that of the resonances.
+    provenance = Provenance.since(start, powers.provenance.method, _COMPARED)
     found = replace(powers, resonances=resonances, provenance=provenance)
-    vars(found)["again"] = powers.again  # for the model error, only the powers are computed again
+    vars(found)["again"] = powers.again  # the model error repeats the powers only, without resonances
     return found
 
 
@@ -290,7 +295,10 @@ def _powers(
     road: RoadRoughness | None,
     compared: bool,
 ) -> Harvest:
-    """Compute the result of `harvested` without resonances, which its model error need not solve again."""
+    """Compute the result of `harvested` without the resonances.
+
+    It is a function of its own because the model error repeats it, and needs no resonances.
+    """
     start = perf_counter()
     check_scene(scene)
     electrodes = electrodes_of(scene)
@@ -309,7 +317,7 @@ def _powers(
     if road is not None:
         on_road, said = harvest_on_road(response, road, discretization, compared)
         warnings, most = [*warnings, *said], most + SEVERAL * on_road.strain
-    how = "" if road is None else f", with {SEVERAL:g} standard deviations on the road,"
+    how = "" if road is None else f", with {SEVERAL:g} standard deviations of the response to the road,"
     warnings += _warn_of_strain(most, response.speeds, electrodes, how)
     return Harvest(
         speeds=response.speeds,
@@ -327,7 +335,7 @@ def _powers(
 
 
 def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
-    """Yield requests, each with 1.5 times as many modes, as long as there are larger models."""
+    """Yield up to three requests, each with 1.5 times as many modes as the last, if the models exist."""
     for _ in range(_LARGER):
         if (finer := request.refined()) is None:
             return
@@ -376,7 +384,8 @@ class ElectricLines:
     equations : Equations
         Equations of the n coordinates.
     pairs : ndarray, shape (lines, 2)
-        Multiples of the speed and of the road's frequency of each line.
+        Harmonic (j, k) of each line: multiples of the speed and of the road's frequency, whose sum is its
+        frequency.
     coordinates, velocity : ndarray, shape (S, n, lines)
         Coordinates, and their rates.
     voltage, current : ndarray, shape (S, lines)
@@ -421,7 +430,10 @@ class ElectricLines:
         equations: Equations,
         parts: list[tuple[PeriodicSystem, np.ndarray]],
     ) -> ElectricLines:
-        """Solve for all coordinates at speeds (S,), given uncoupled parts of equations and their indices."""
+        """Solve for all coordinates at S speeds.
+
+        The equations are given in uncoupled `parts`, each with the indices of its coordinates.
+        """
         motion = check_steady_state(request.scene.motion)
         every = np.broadcast_to(np.eye(equations.size), (len(speeds), equations.size, equations.size))
         used, c, truncation = solve_parts(parts, every, request.harmonics, request.tolerance)
@@ -437,18 +449,24 @@ class ElectricLines:
 
     @property
     def halves(self) -> np.ndarray:
-        """Factor of the mean product of two amplitudes of a line: 1 for a static line, else 1/2."""
+        """Factors (lines,) that convert products of two amplitudes of a line to means over time.
+
+        They are 1 for a static line, else 1/2.
+        """
         return np.where(self.pairs.any(axis=1), 0.5, 1.0)
 
     @property
     def power(self) -> np.ndarray:
-        """Mean power [W]."""
+        """Mean power into the load [W], shape (S,)."""
         return np.real(self.voltage.conj() * self.current) @ self.halves
 
 
 @dataclass(frozen=True)
 class HarvestedPowers:
-    """Mean powers and largest voltage, current, strain at S speeds; relative error by harmonics left out."""
+    """Mean powers, and largest voltage, current and strain, at S speeds.
+
+    The fields are as in `Harvest`; `truncation` is the relative error by the harmonics left out.
+    """
 
     power: np.ndarray
     input_power: np.ndarray
@@ -476,7 +494,10 @@ class HarvestedPowers:
         )
 
     def apart(self, other: HarvestedPowers) -> np.ndarray:
-        """Compute relative differences in power; if the power is 0, in voltage; if that is 0, in current."""
+        """Compute the relative difference from another result at each speed.
+
+        It is the difference in power; if the power is 0, that in voltage; if this is 0 too, that in current.
+        """
         found = np.zeros(len(self.power))
         for name in ("current", "voltage", "power"):
             own, its = getattr(self, name), getattr(other, name)

@@ -14,7 +14,8 @@ _MAXIMA = 16  # number of largest local maxima of the samples that are refined
 _LEAST_SAMPLE = 0.5  # samples below this fraction of the largest are not near the maximum (Riesz' inequality)
 _MOST_STEPS = 20  # largest number of Newton's steps; more than a few are needed only near a saddle
 _CONVERGED = 1e-15  # relative increase by one step below which the maximum has converged
-_WEAK = 0.02  # sum of weak lines over the sum of all lines: weak lines shift maxima, but hardly add any
+# Largest sum of the weak lines, relative to the sum of all lines: they shift maxima, but hardly add any.
+_WEAK = 0.02
 # Offset of the samples, in spacings of samples: symmetric sums have saddles at multiples of the spacing.
 _OFFSET = np.array([0.21, 0.37])
 _MOST_SAMPLES = 2**20  # number of samples evaluated at once: 8 MB
@@ -38,9 +39,10 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     if not len(harmonics):
         return largest
     size = np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1)
-    # Over the plane of both phases each line is a wave. Waves with proportional harmonics are parallel, and
-    # others cross. The strongest is constant along its crests; the waves that cross it decide where on
-    # a crest the maximum is, however weak they are.
+    # Over the plane of both phases each line is a wave.  Waves with proportional harmonics are parallel;
+    # others cross.  The strongest wave is constant along its crests, so that the waves that cross it decide
+    # where on a crest the maximum is, however weak they are.  So lines are also strong in comparison with
+    # these waves.
     j, k = harmonics.T
     crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
     others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)
@@ -54,12 +56,15 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
 
 
 def _grid(degree: np.ndarray) -> np.ndarray:
-    """Choose the number of samples of each phase for harmonics up to a degree (2,)."""
+    """Return the numbers of samples of the two phases, shape (2,), for harmonics up to a degree (2,)."""
     return np.where(degree > 0, 6 * (degree.max() + 1), 1)
 
 
 def _find_largest(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) -> np.ndarray:
-    """Find the largest magnitude of sums of lines, sampled with harmonics up to a degree (2,)."""
+    """Find the largest magnitude of S sums of lines, shape (S,).
+
+    The sums are first sampled with the harmonics up to `degree` (2,) only.
+    """
     grid = _grid(degree)
     owner, place = _find_maxima(_sample(amplitude, harmonics, degree))
     phases = (place + _OFFSET) * (2 * np.pi / grid)
@@ -76,7 +81,7 @@ def _find_largest(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarr
 
 
 def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) -> np.ndarray:
-    """Sample the magnitude of S sums of lines on a grid of N phases of each kind: (S, N, N).
+    """Sample the magnitude of S sums of lines on a grid of the two phases: (S, samples, samples).
 
     Only harmonics up to a degree (2,) are included.
     """
@@ -91,9 +96,12 @@ def _sample(amplitude: np.ndarray, harmonics: np.ndarray, degree: np.ndarray) ->
 
 
 def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the R largest local maxima of sampled sums (sums, N, N): indices of sum and sample."""
+    """Find the R largest local maxima of sampled sums (sums, N, N).
+
+    Return for each the index of its sum, shape (R,), and the two indices of its sample, shape (R, 2).
+    """
     highest = sampled
-    for axis in (1, 2):  # the samples are periodic
+    for axis in (1, 2):  # np.roll compares neighbours across the ends, too: the phases are periodic
         beside = np.roll(highest, 1, axis), np.roll(highest, -1, axis)
         highest = np.maximum(np.maximum(highest, beside[0]), beside[1])
     flat = np.where(sampled >= highest, sampled, -1.0).reshape(len(sampled), -1)
@@ -104,9 +112,10 @@ def _find_maxima(sampled: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, longest: float) -> np.ndarray:
-    """Compute Newton's step of the phases towards a larger magnitude.
+    """Compute Newton's step of the two phases towards a larger magnitude, shape (R, 2).
 
-    The absolute values of the curvatures are used, so that the iteration does not end at saddles.
+    The absolute values of the principal curvatures are used, so that the iteration does not end at saddles;
+    along each principal direction the step is at most `longest` [rad].
     """
     k, axes = np.linalg.eigh(curvature)
     size = np.abs(k)
@@ -118,7 +127,7 @@ def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, lo
 def _evaluate_size(
     a: np.ndarray, h: np.ndarray, phases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate the magnitude of sums of lines, with the first component's sign, and derivatives.
+    """Evaluate the magnitude of sums of lines, with the sign of the first component, and its derivatives.
 
     The derivatives are the gradient and the second derivatives with respect to the two phases.
     """
@@ -129,7 +138,7 @@ def _evaluate_size(
     divisor = np.where(size == 0, 1.0, size)
     direction = u / divisor[:, None]
     along = np.einsum("rd,rda->ra", direction, slope)
-    # Part of the derivative that changes only the direction of u.
+    # Part of the derivative of the vector u that changes its direction only, not its magnitude.
     turning = slope - direction[..., None] * along[:, None]
     bending = np.einsum("rd,rdab->rab", direction, curvature)
     sideways = turning / divisor[:, None, None]
@@ -137,9 +146,10 @@ def _evaluate_size(
 
 
 def _evaluate(a: np.ndarray, h: np.ndarray, phases: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate sums of lines and their derivatives at two phases each; a is (sums, components, lines).
+    """Evaluate sums of lines and their derivatives, each at its own pair of phases.
 
-    The derivatives are the gradient and the second derivatives with respect to the two phases.
+    The amplitudes a have the shape (sums, components, lines), the harmonics h (lines, 2), and the phases
+    (sums, 2).  The derivatives are the gradient and the second derivatives with respect to the two phases.
     """
     first = h.astype(float)
     second = np.concatenate(

@@ -25,9 +25,9 @@ from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 Pair = tuple[int, int]  # harmonic (j, k): j of rotation, k of the road
 
 _EPS = np.finfo(float).eps
-# Attributes of motions that have a steady state.
+# Attributes that a motion must have for its steady state to be known.
 _STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")
-_GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn
+_GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn until the harmonics are resolved
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class PeriodicSystem:
     rates : ndarray, shape (S, 2)
         Rates nu_1, nu_2 of the phases [rad/s].
     mean : ndarray, shape (3, S, coordinates, coordinates)
-        Constant parts of K, C and M, in this order: of the derivatives 0, 1 and 2.
+        Constant parts of the matrices K, C and M, in this order.
     varying : tuple of (int, ndarray, ndarray)
         Periodic parts: the order of the derivative (0 for K, 1 for C), a spectrum, its S matrices.
     loads : tuple of (ndarray, ndarray)
@@ -88,9 +88,9 @@ class PeriodicSystem:
         return ~stiff
 
     def is_free(self, harmonics: np.ndarray) -> np.ndarray:
-        """Find coordinates without stiffness, whose static part is arbitrary and set to 0.
+        """Mark harmonics of frequency 0 of coordinates without stiffness: shape (S, harmonics, coordinates).
 
-        The result has the shape (rates, harmonics, coordinates).
+        These static parts of the response are arbitrary, and are set to 0.
         """
         return (self.rates @ harmonics.T == 0)[..., None] & self.without_stiffness
 
@@ -122,7 +122,7 @@ class MeanModes:
 
     @classmethod
     def of_system(cls, system: PeriodicSystem) -> MeanModes:
-        """Compute the modes at S pairs of phase rates; raise a LinAlgError if the mass is singular."""
+        """Compute the modes at S pairs of phase rates; raise a LinAlgError if the mass matrix is singular."""
         K, _, M = system.mean
         inverse = np.linalg.inv(np.linalg.cholesky(M))
         squared, vectors = np.linalg.eigh(inverse @ K @ np.swapaxes(inverse, 1, 2))
@@ -134,7 +134,7 @@ class MeanModes:
 
 
 def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
-    """Compute the harmonics of samples (rates, N, N) on N x N phases; set rounding errors to 0."""
+    """Compute harmonics (S, N, N) of functions sampled at N x N pairs of phases; set rounding errors to 0."""
     if (samples == samples[:, :1, :1]).all():
         constant = np.zeros(samples.shape, dtype=complex)
         constant[:, 0, 0] = samples[:, 0, 0]
@@ -144,14 +144,14 @@ def _fourier_coefficients(samples: np.ndarray) -> np.ndarray:
 
 
 def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
-    """List the harmonics (j, k) that are not 0 at some speed."""
+    """List the harmonics (j, k) of a spectrum (S, N, N) that differ from 0 at one or more speeds."""
     N = spectrum.shape[-1]
     index = (np.arange(N) + N // 2) % N - N // 2
     return {(int(index[a]), int(index[b])) for a, b in np.argwhere(spectrum.any(axis=0))}
 
 
 def select_harmonics(spectrum: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """Select harmonics (..., 2) of a spectrum; 0 where its grid has no such harmonic."""
+    """Select the harmonics `pairs`, (..., 2), of a spectrum; those that its grid does not resolve are 0."""
     inside = (np.abs(pairs) < spectrum.shape[-1] // 2).all(axis=-1)
     j, k = np.moveaxis(np.where(inside[..., None], pairs, 0), -1, 0)
     return np.where(inside, spectrum[:, j, k], 0)
@@ -166,16 +166,17 @@ def generate_harmonics(start: Iterable[Pair], coupling: set[Pair], interactions:
     Parameters
     ----------
     start : iterable of pair
-        Initial harmonics; with each, its opposite.
+        Harmonics (j, k) to start with; for each, the opposite (-j, -k) must also be given.
     coupling : set of pair
         Harmonics of the periodic coefficients.
     interactions : int
-        Number of interactions.
+        Largest number of interactions, each of which adds a harmonic of the coefficients to the harmonics.
 
     Returns
     -------
     list of list of pair
-        Levels: the harmonics first reached by 0, 1, ... interactions; ends early if a level adds none.
+        For 0, 1, ... interactions the harmonics that are not reached by fewer; the list ends early if an
+        interaction adds none.
     """
     levels, seen = [sorted(start)], set(start)
     for _ in range(interactions):
@@ -241,7 +242,10 @@ def _stack(arrays: list[np.ndarray]) -> np.ndarray:
 
 
 def split_uncoupled(system: PeriodicSystem, equations: Equations) -> list[tuple[PeriodicSystem, np.ndarray]]:
-    """Split the equations into uncoupled parts, such as two planes, with the indices of their coordinates."""
+    """Split the equations into uncoupled parts, such as two planes of bending.
+
+    Return each part with the indices of its coordinates.
+    """
     places = [equations.places(names) for names in equations.connected]
     return [(system.part(each), each) for each in places]
 
@@ -330,12 +334,13 @@ def excitation_lines(
     motion : Motion or None
         The motion, which names the lines.
     order : int
-        1: lines of the load and of the stiffness; n: also lines of up to n - 1 interactions.
+        Order of the lines: 1 for the lines of the load and of the stiffness; n also for those that up to n -
+        1 products of these with the periodic stiffness add.
 
     Returns
     -------
     forced, parametric : list of Line
-        Ascending in frequency.
+        Lines of the load, and lines of the stiffness, ascending in frequency.
     """
     motion = check_steady_state(motion)
 

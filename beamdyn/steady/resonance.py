@@ -36,9 +36,12 @@ from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, per
 
 _HIGHEST_ORDER = 20  # highest accepted order of lines, whose search takes ten seconds
 _NODES = 400  # number of intervals of speed in which roots are bracketed
-# Number of intervals of speed with large deflection: an equilibrium is solved at each, and loci are smooth.
+# Number of these intervals with large deflection: fewer, as an equilibrium is solved at each speed, and as
+# the loci are smooth.
 _BENT_NODES = 100
-_FURTHER_MODES = 2  # number of modes solved in addition: modes of other parts may become lower with speed
+# Number of modes solved in addition to the requested ones: with speed, modes of other uncoupled parts of the
+# equations may become lower than these.
+_FURTHER_MODES = 2
 
 
 @statements.announced
@@ -52,11 +55,11 @@ def resonance_speeds(
 ) -> Crossings:
     """Find the speeds at which excitation lines equal natural frequencies.
 
-    The roots of lambda_i(omega) - multiple omega, and of lambda_i + lambda_j - multiple omega, are
-    bracketed on the continuous loci and refined to rounding error; minima of the distance between the
-    brackets are sought too, so that two close roots are both found.  Damping is neglected.  Modes that no
-    term couples, such as those of two planes without twist, each meet only the lines of their own loads and
-    stiffness.
+    The roots of lambda_i(omega) - multiple omega, and of lambda_i + lambda_j - multiple omega, are bracketed
+    on the continuous loci and refined to rounding error; in addition, minima of the distance are sought
+    within intervals without a change of sign, so that two close roots are both found.  Damping is neglected.
+    Modes that no term couples, such as those of two planes without twist, each meet only the lines of their
+    own loads and stiffness.
 
     Parameters
     ----------
@@ -65,11 +68,12 @@ def resonance_speeds(
     top_speed : float
         Top speed [rad/s]; the search ends at the critical speed.
     modes : int
-        Number of modes.
+        Number of modes, the lowest ones at rest.
     order : int
-        1: the lines of the load, and 2 lambda_i = a line of the stiffness.  n: also the lines that up to
-        n - 1 interactions of the load with the periodic stiffness add, and lambda_i + lambda_j = sums
-        and differences of up to n lines of the stiffness.  The crossings of order n + 1 are counted.
+        1: crossings lambda_i = a line of the load, and 2 lambda_i = a line of the stiffness.  n: also
+        crossings with the lines that up to n - 1 products of the load with the periodic stiffness add, and
+        lambda_i + lambda_j = sums and differences of up to n lines of the stiffness.  Crossings of order n +
+        1 are only counted.
     discretization : {"ritz", "fem"} or Discretization
         As for `natural_modes`.
     tolerance : float, optional
@@ -168,8 +172,10 @@ class _UncoupledModes:
     ----------
     loci : _Loci
         Natural frequencies over speed.
-    lines, more_lines : pair of list of Line
-        Lines of the load (forced) and of the stiffness (parametric), up to the requested order and the next.
+    lines : pair of list of Line
+        Lines of the load (forced) and of the stiffness (parametric), up to the requested order.
+    more_lines : pair of list of Line
+        The same up to the next order.
     """
 
     loci: _Loci
@@ -249,18 +255,19 @@ def _split(model: Model, top: float, modes: int) -> Iterator[_Loci]:
 
 
 class _Loci:
-    """Natural frequencies over speed in ascending order, which have kinks where they cross.
+    """Natural frequencies over speed, sorted at each speed: the curves have kinks where modes cross.
 
     Parameters
     ----------
     model : Model
         The discretized scene.
     solver : Eigensolver
-        Eigensolver of the requested modes, which other modes do not affect.
+        Eigensolver of the part of the equations to which the modes belong; no term couples it with other
+        parts.
     places : ndarray of int
         Indices of the solver's coordinates among those of the model.
     numbers : ndarray of int, shape (m,)
-        Numbers of the modes among all, from 1, in the order at rest.
+        Numbers of these modes among the modes of all parts, from 1, in the order at rest.
     top : float
         Top speed [rad/s].
     """
@@ -286,7 +293,7 @@ class _Loci:
         return np.abs(np.imag(self.solver.eigenvalues(speeds, self.modes)))
 
     def crossings(self, kind: str, line: Line, indices: tuple[int, ...]) -> Iterator[Crossing]:
-        """Yield the crossings of a line with a natural frequency, or the sum of two, of given indices."""
+        """Yield the crossings of a line with the natural frequency, or sum of two, that `indices` select."""
         if self.coincide(line, indices):
             return
 
@@ -303,13 +310,13 @@ class _Loci:
         return int(np.count_nonzero(np.diff(self._detunings(line, indices) > 0)))
 
     def coincide(self, line: Line, indices: tuple[int, ...]) -> bool:
-        """Return whether a line equals a natural frequency, or a sum of two, at all speeds, as on a hinge."""
+        """Return whether a line equals a natural frequency, or a sum of two, at all speeds (hinged beam)."""
         return coincides(self._detunings(line, indices), self.values[:, indices].sum(axis=1))
 
     def describe_coincidence(self, kind: str, line: Line, indices: tuple[int, ...]) -> str:
         """Describe in a sentence that a line equals a natural frequency at every speed."""
         modes = " and ".join(f"mode {number}" for number in sorted({int(self.numbers[i]) for i in indices}))
-        return f"{modes} and the line {line.name} ({kind}) resonate at every speed, which is no crossing"
+        return f"{modes} and the line {line.name} ({kind}) resonate at every speed, so there is no crossing"
 
     def _detunings(self, line: Line, indices: tuple[int, ...]) -> np.ndarray:
         """Compute a frequency, or the sum of two, minus a line [rad/s], at the speeds of the locus."""
@@ -318,7 +325,10 @@ class _Loci:
     def _crossing(
         self, kind: str, line: Line, indices: tuple[int, ...], speed: float, slope: float
     ) -> Crossing:
-        """Build the crossing at a root `speed`; the detuning's slope converts frequency to speed errors."""
+        """Build the crossing at `speed`, a root of the detuning.
+
+        The slope of the detuning over speed converts the error of the frequency to that of the speed.
+        """
         omega = self.frequencies(np.array([speed]))[0]
         vectors = self.solver.solve(np.array([speed]), self.modes).vector[0]
         embedded = np.zeros((self.model.solver.size, self.modes), dtype=vectors.dtype)

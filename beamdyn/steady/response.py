@@ -47,7 +47,7 @@ from beamdyn.steady.vibration import (
 
 _MOST_HARMONICS = 20  # largest accepted number of interactions, whose solution takes half a minute
 _HIGHEST_SPEED = 0.99  # largest speed at which modes of a basis are computed, relative to the critical speed
-_MOST_MODES = 13  # largest number of modes of "auto" at the slowest speed, and at the fastest
+_MOST_MODES = 13  # largest number of modes that "auto" takes at the slowest speed, and at the fastest
 # First number of modes tried about equilibria; not small, because equilibria are solved again for each basis.
 _FIRST_ABOUT_EQUILIBRIA = 6
 # Number of speeds at which the model error is computed, in addition to that of the largest amplitude.
@@ -137,7 +137,7 @@ class SteadyResponse(StatesModelError):
     def headline(self) -> Iterator[str]:
         """Yield speeds, largest amplitude and error for a one-line summary; see `Result.headline`."""
         largest = self.say_length(np.nanmax(self.amplitude, initial=0.0))
-        yield f"{len(self.speeds)} speeds, {self.say_speed(self.speeds)}: up to {largest}"
+        yield f"{counted(len(self.speeds), 'speed')}, {self.say_speed(self.speeds)}: up to {largest}"
         yield f"harmonics' {error_at_most(self.error)}"
         yield from (states(self.status, ("stable",)), warned(self.warnings))
 
@@ -207,7 +207,7 @@ class SteadyResponse(StatesModelError):
     def tip(self, rotation: np.ndarray, road: np.ndarray | float = 0.0, direction: int = 0) -> np.ndarray:
         """Compute the tip deflection [m] at phases of rotation and road [rad]: (speeds, phases).
 
-        Direction 0 is that of the bending angle at the root, direction 1 is across.
+        Direction 0 is the direction of bending at the root; 1 is perpendicular to it and to the axis.
         """
         rotation, road = np.broadcast_arrays(rotation, road)
         phase = np.tensordot(self.harmonics, np.stack([rotation, road]), axes=1)
@@ -327,8 +327,8 @@ class ResponseRequest(FieldsOnly):
         line, share = add_static(vibrating, harmonic, vibration.static, scene.physics.planes)
         vibrated = _largest(vibrating, harmonic, stable)
         about = " about the equilibrium at each speed" if scene.physics.large_deflection else ""
-        method = f"{self.model.discretization}, {self.basis}{about}, {len(used)} harmonics"
-        estimated = "without the harmonics of the last interaction"
+        method = f"{self.model.discretization}, {self.basis}{about}, {counted(len(used), 'harmonic')}"
+        estimated = "without the harmonics that the last product with the stiffness adds"
         without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(
             speeds=speeds,
@@ -351,9 +351,9 @@ class ResponseRequest(FieldsOnly):
         )
 
     def solve_with(self, scene: Scene, _: str = "") -> SolvedValues:
-        """Compute amplitudes of another scene with as many modes.
+        """Compute the amplitudes of another scene at the same speeds, with as many modes as this request has.
 
-        If only one of the two scenes has large deflection, there may be more modes.
+        If only one of the two scenes has large deflection, more modes may be used.
         """
         modes = self.basis.modes or 1
         other = replace(self, scene=scene, discretization=ensure_size(scene, self.discretization, modes))
@@ -423,11 +423,11 @@ def _warnings(
                 f"{name} at {counted(int(at.sum()), 'speed')}, ", where, ": no steady response", kind=GROWING
             )
     if (at := vibration == 0).any():
-        remedy = "that takes gravity, or a wavy road and a speed other than 0"
+        remedy = "add gravity, or a wavy road and a speed other than 0"
         said = (
             "nothing excites the beam at ",
             validity.list_speeds(speeds, at),
-            f", so that it does not move: {remedy}",
+            f", so that it does not move; {remedy}",
         )
         yield Statement(*said, kind=EXCITATION, remedy=remedy)
     if not scene.physics.large_deflection:
@@ -437,7 +437,7 @@ def _warnings(
         yield Statement(
             f"the tip vibrates by {ratio:.2g} of the length about the equilibrium at ",
             validity.list_speeds(speeds, large),
-            f": past {validity.LARGE_DEFLECTION:g} vibration is not linear",
+            f": above {validity.LARGE_DEFLECTION:g} linear theory of vibration does not hold",
             kind=LIMITS,
             quantity="tip deflection over the length",
             value=ratio,

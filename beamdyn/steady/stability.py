@@ -11,9 +11,10 @@ the radius rho_a, the sum of its row of |V|.  Without damping, and with a mean e
 eigenvalue leaves the imaginary axis only by meeting one of opposite energy (Krein), so that the motion is
 stable if no disc of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h, or if all discs lie left of
 the axis.  Without damping, discs that are far from others are drawn smaller first, by scaling the
-coordinates.  Only where discs still overlap are the eigenvalues computed: with the harmonics h of the
-overlaps and (0, 0), between which the motion resonates, and those that some interactions with the periodic
-coefficients add on all sides.  Their number grows until the growth rate settles.
+coordinates.  Eigenvalues are computed only where discs still overlap.  The matrix then has the harmonics
+between which the motion resonates, (0, 0) and the h of the overlaps, and those that a few multiplications of
+these by the periodic coefficients (interactions) add.  Their number is increased until the growth rate has
+converged.
 
 In shapes of arrays, S counts speeds, n coordinates, m eigenvalues of the mean equations, and H harmonics.
 """
@@ -39,17 +40,19 @@ _ROUNDING = 1e-9  # largest real part, over the largest |eigenvalue|, that count
 _SETTLED = 1e-6
 _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
 _MOST_OUTSIDE = 0.1  # largest share of an accepted eigenvector in the outermost harmonics
-_SAME_RATE = 0.05  # growth rates this close, over their change by the resonance, are those of one exponent
+# Largest difference of growth rates that belong to copies of one exponent, relative to the change of the
+# growth rate by the resonance.
+_SAME_RATE = 0.05
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
 _OFF = 1e-4  # offset of a shift from an eigenvalue, over the largest |eigenvalue|, to avoid a singular matrix
 _SINGULAR = (
     "the equations with periodic coefficients are singular: the excitation is too strong for "
     "the beam's stiffness; check the size and the unit of each value"
 )
-_STATIONARY = 1e-9  # frequency of a harmonic, over the phases' rates, below which it is stationary
+_STATIONARY = 1e-9  # frequency of a harmonic that counts as 0, relative to the larger rate of the two phases
 _MOST_STEPS = 6  # number of interactions within which a harmonic of frequency 0 is sought
 _PHASES = 8  # number of phase differences tried for commensurate rates; the fastest growth counts
-_BETWEEN_PHASES = 0.1  # error due to phases not tried, over the range of growth rates at those tried
+_BETWEEN_PHASES = 0.1  # error by phases not tried, relative to the range of growth rates at those tried
 
 
 def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
@@ -82,7 +85,8 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     error[singular] = np.inf
     rows = np.flatnonzero(~singular)
     if len(rows):
-        R, n = R[rows], system.size  # modes scaled so that |V| is symmetric
+        R, n = R[rows], system.size
+        # The eigenvectors are scaled so that |V| is symmetric.
         R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
         V = _balance(sigma[rows], [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic])
         free = _MeanMotion(system.rates[rows], system.coupling, sigma[rows], V)
@@ -117,7 +121,7 @@ def _combine(sigma: np.ndarray, shift: np.ndarray, resonances: list[_Resonance])
 
 
 def _largest_real_part(s: np.ndarray, scale: np.ndarray | float) -> np.ndarray:
-    """Return the largest real part of exponents s, or 0 where it is a rounding error of `scale`."""
+    """Return the largest real part of exponents s; 0 if it is only a rounding error relative to `scale`."""
     largest = np.real(s).max(axis=-1)
     return np.where(np.abs(largest) <= _ROUNDING * scale, 0.0, largest)
 
@@ -168,8 +172,8 @@ def _balance(
 ) -> list[tuple[np.ndarray, np.ndarray]]:
     """Scale overdamped modes so that their coupling to other modes is equal in both directions.
 
-    With the scale of oscillating modes, the slow decay of a circuit with a large resistance would act on all
-    others by discs that grow with that resistance.
+    Scaled like oscillating modes, the slowly decaying mode of a circuit with a large resistance would enlarge
+    the Gershgorin discs of all other modes in proportion to that resistance.
     """
     parts = (np.abs(f).sum(axis=(1, 2))[:, None, None] * np.abs(v) for f, v in V)
     size = reduce(np.add, parts) * (1 - np.eye(sigma.shape[1]))
@@ -227,7 +231,8 @@ class _MeanMotion:
         opposite = (h[:, None] == -h[None]).all(axis=2).argmax(axis=1)
         product = np.abs(coupling[..., opposite] * np.swapaxes(coupling, 1, 2))
         own = np.arange(product.shape[1])
-        # Terms of harmonics h and -h cancel (opposite gaps): a varying frequency does not shift the growth.
+        # A mode's coupling with itself is left out: its terms of harmonics h and -h cancel, as their gaps are
+        # opposite.  So a periodic variation of its own frequency does not shift the growth rate.
         product[:, own, own] = 0
         with np.errstate(divide="ignore", invalid="ignore"):
             shift = np.where(product > 0, product / np.abs(self.gap(harmonics)), 0.0).sum(axis=(2, 3))
@@ -242,8 +247,9 @@ class _MeanMotion:
     def shrunk_radius(self, harmonics: list[Pair]) -> np.ndarray:
         """Compute the radii (rates, modes) of Gershgorin discs, made smaller where other discs are far away.
 
-        Scaling the coordinates of far discs by t < 1 keeps the terms of a row that couple it with discs
-        close by, and multiplies its rest by t; far discs grow by 1/t, to half their distance.
+        The coordinates of far discs are scaled by t < 1.  In the row of a disc this keeps the terms of
+        coupling with discs close by, and multiplies the terms of coupling with far discs by t.  The radii of
+        far discs grow by 1/t, to at most half of their distance.
         """
         radius, distance = self.radius, np.abs(self.gap(harmonics))
         close = 2 * radius.max(axis=1)[:, None, None, None]
@@ -264,7 +270,7 @@ class _MeanMotion:
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
-        # The first stationary harmonic found has the fewest interactions.
+        # Harmonics are in the order of their interactions: the first stationary one has the fewest.
         reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]
         pairs = np.array([h for level in reached for h in level])
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
@@ -280,7 +286,7 @@ class _MeanMotion:
             yield int(i), found
 
     def _overlap(self, harmonics: list[Pair], radius: np.ndarray) -> np.ndarray:
-        """Return which Gershgorin discs of modes of opposite energy overlap at a harmonic, by pair of modes.
+        """Return which discs of modes of opposite energy overlap, shape (rates, modes, modes, harmonics).
 
         If all discs lie left of the imaginary axis, none counts as overlapping.
         """
@@ -345,9 +351,10 @@ class _Resonance:
     def _select(self, s: np.ndarray, z: np.ndarray, inner: int, scale: float) -> tuple[float, complex]:
         """Select the growth rate from eigenvalues and vectors, and the start value for the next step.
 
-        Every exponent s recurs as s + i Omega_h about each harmonic h.  Copies about the outermost
-        harmonics, past the `inner` rows, are wrong, because their neighbours are missing.  Of the others,
-        the copy with the smallest part in the outermost harmonics is the most accurate.
+        Hill's matrix has copies s + i Omega_h of every exponent s, one for each harmonic h.  Copies whose
+        vector is large in the outermost harmonics (rows from `inner` on) are wrong, because the neighbours of
+        these harmonics are missing.  Of the other copies, the one with the smallest part in the outermost
+        harmonics is the most accurate.
         """
         outer = (np.abs(z[inner:]) ** 2).sum(axis=0) / (np.abs(z) ** 2).sum(axis=0)
         s, outer = s[outer < _MOST_OUTSIDE], outer[outer < _MOST_OUTSIDE]
@@ -361,7 +368,7 @@ class _Resonance:
     def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:
         """Build Hill's matrix for the harmonics within a number of interactions, and count its inner rows.
 
-        Inner rows, which come first, are those of the harmonics within one interaction less.  Harmonics that
+        Inner rows, which come first, are those of the harmonics within one interaction fewer.  Harmonics that
         differ by one of frequency 0 (commensurate rates) are merged; `phase` is that harmonic's phase [rad].
         """
         levels = generate_harmonics(self.harmonics, self.coupling, interactions)
@@ -374,7 +381,7 @@ class _Resonance:
         return hill, len(inner) * len(self.sigma)
 
     def _fold(self, h: Pair) -> Pair:
-        """Return the representative of harmonics that differ from h by multiples of the stationary one."""
+        """Return the representative of harmonics that differ from h by multiples of `stationary`."""
         if self.stationary is None:
             return h
         (j, k), (a, b) = h, self.stationary
@@ -382,7 +389,7 @@ class _Resonance:
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
-        """Build the matrix of the product with a spectrum, adding harmonics of equal rate.
+        """Build the matrix that multiplies harmonics by a function; harmonics of equal rate are merged.
 
         `phase` is as for `_hill_matrix`.
         """
@@ -401,12 +408,12 @@ class _Resonance:
 def _nearest_eigenvalues(
     hill: scipy.sparse.csc_array, near: complex, scale: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the eigenvalues of a sparse matrix nearest to a value, and their vectors."""
+    """Compute the eigenvalues of a sparse matrix nearest to the value `near`, and their eigenvectors."""
     start = np.ones(hill.shape[0], dtype=complex)
     try:
         return eigs(hill, min(_NEAREST, hill.shape[0] - 2), sigma=near + _OFF * scale, v0=start)
     except ArpackError:
         s, z = np.linalg.eig(hill.toarray())
         return s, z
-    except RuntimeError:  # the factorization failed
+    except RuntimeError:  # the LU factorization failed: the matrix is singular
         raise NoModelAnswer(_SINGULAR) from None

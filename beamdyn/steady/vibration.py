@@ -58,7 +58,8 @@ class Vibration:
     without_rate : ndarray of bool, shape (S,)
         Whether the growth rate is undefined at each speed.
     lost : dict of str to ndarray of bool, shape (S,)
-        For each reason, whether there is no stable mean position to vibrate about; the first true one counts.
+        For each status (the key), whether it is the reason why the beam has no stable mean position to
+        vibrate about; if several apply, the first counts.
     """
 
     parts: list[tuple[PeriodicSystem, np.ndarray]]
@@ -68,9 +69,9 @@ class Vibration:
     lost: dict[str, np.ndarray]
 
     def stability(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Compute at each speed growth rate of free motion [1/s], its error, status, whether it is uncertain.
+        """Compute growth rate of free motion [1/s], its error, status, and whether the status is uncertain.
 
-        The status is uncertain where the growth rate is smaller than its error.
+        Each is an array (S,).  The status is uncertain where the growth rate is smaller than its error.
         """
         rate, error = np.full((2, len(self.static)), np.nan)
         if (known := ~self.without_rate).any():
@@ -121,7 +122,10 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
 def _about_equilibria(
     model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray
 ) -> Vibration:
-    """Build equations about each equilibrium; without one, about the straight beam as a placeholder.
+    """Build the equations of vibration about the equilibrium at each speed.
+
+    Where there is no equilibrium, those about the straight beam stand in for them; their results are not
+    used.
 
     The directions of the tip are: of bending, across, and along the axis of the beam at the root.
     """
@@ -149,10 +153,10 @@ def _about_equilibria(
 
 
 def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
-    """Find coordinates in equilibrium at each speed, in rows; nan where the branch has none.
+    """Find the coordinates in equilibrium at each speed, in rows; nan where the scene's branch has none.
 
-    The branch that begins at rest is followed to rising speeds, the other branch to falling ones from the
-    fastest speed that has it; the search ends where a branch ends.
+    The branch that begins at rest is followed to higher speeds; the other branch is followed to lower speeds,
+    from the fastest speed at which it exists.  The search ends where the branch ends.
     """
     solver = model.deflected
     try:
@@ -260,21 +264,24 @@ def _solve_harmonics(
 
 
 def sizes_of(c: np.ndarray) -> np.ndarray:
-    """Compute the largest magnitudes of vectors Re(c exp(i phi)) over phi; components of c are its axis 1."""
+    """Compute the largest magnitude over phi of each vector Re(c exp(i phi)).
+
+    Axis 1 of c has the components of the vectors; the result lacks this axis.
+    """
     return longer_semi_axis(np.moveaxis(c, 1, 0))
 
 
 def combine_pairs(c: np.ndarray, harmonics: list[Pair], motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    """Combine each pair h, -h into the line of positive frequency.
+    """Combine the amplitudes of each pair of harmonics h, -h into one line of positive frequency.
 
     Parameters
     ----------
     c : ndarray of complex, shape (..., H)
         Amplitudes of the harmonics.
     harmonics : list of pair, length H
-        The harmonics; with each, its opposite.
+        The harmonics (j, k), which include the opposite (-j, -k) of each.
     motion : Motion
-        The motion, whose `road_multiple` orders them by frequency.
+        The motion; its `road_multiple` gives the sign of each harmonic's frequency.
 
     Returns
     -------
@@ -307,7 +314,8 @@ def add_static(
     -------
     total : ndarray of complex, shape (S, directions, lines)
     share : ndarray, shape (S,)
-        Sum of all lines' magnitudes before, over the sum after (at most 1): factor on relative errors.
+        Factor for errors relative to the sum of the lines: sum of all lines' magnitudes without the
+        deflection in equilibrium, divided by the sum with it; at most 1.
     """
     total = line[:, :directions].copy()
     total[..., ~harmonics.any(axis=1)] += static[:, :directions, None]

@@ -30,8 +30,8 @@ class Caution:
     weight : float
         Severity, by which the worst of the warnings of one kind is chosen.
     said : str
-        Text about the worst design, which follows the number of designs; a statement object if programs may
-        query its kind.
+        Text about the worst design, which is shown after the number of designs; a `Statement`, also a string,
+        if programs may query its kind.
     """
 
     kind: str

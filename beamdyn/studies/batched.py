@@ -92,9 +92,10 @@ class Refinement:
         return target if self.reference.beam.tip is None else min(target, _WITH_TIP_BODY)
 
     def target_of(self, basis: Discretization) -> float:
-        """Return the largest relative error accepted for a basis: the target; for moment bases, more.
+        """Return the largest relative error with which the results in a basis are accepted.
 
-        Moment bases, whose estimated errors are too large, need not meet a target below 1e-10.
+        It is the target, but at least 1e-10 for bases of moment functions, whose estimated errors are too
+        large.
         """
         return within_reach(basis, self._target)
 
@@ -116,9 +117,9 @@ class Refinement:
         bases, answers, functions = self.bases(), list[np.ndarray](), 0
 
         def solve_finer(pending: np.ndarray) -> np.ndarray | None:
-            """Solve the designs that are not accurate yet in the next basis.
+            """Solve the designs with the indices `pending`, which are not accurate yet, in the next basis.
 
-            Return the designs that miss the target, or None after the last basis.
+            Return the indices of the designs that still miss the target; None if there is no further basis.
             """
             nonlocal answers, functions
             if (basis := next(bases, None)) is None:
@@ -266,9 +267,9 @@ def _cautions_of_theory(
 
 
 def cautions_of_refused(status: np.ndarray) -> Iterable[Caution]:
-    """Make a warning about designs without a result, by `status`, because of rounding errors.
+    """Yield a warning about the designs that have no result because of rounding errors.
 
-    Nothing is yielded if all designs have a result.
+    These designs have "refused" in their `status`.  Nothing is yielded if all designs have a result.
     """
     said = Statement(" there is no answer: rounding of the matrices leaves no correct digit", kind=NO_ANSWER)
     return caution_where((status == REFUSED).any(axis=2), "d", 0.0, said)
@@ -286,9 +287,9 @@ def cautions_of_error(error: np.ndarray, tolerance: float | None) -> Iterator[Ca
 def stacks_of(
     designs: SimilarDesigns, rows: np.ndarray, basis: Discretization
 ) -> tuple[PencilStack, PencilStack, PencilFamily, np.ndarray]:
-    """Return matrices of designs in a basis and in its coarser basis, the `PencilFamily`, and weights.
+    """Interpolate the matrices of the designs `rows` in a basis and in its coarser basis.
 
-    The weights interpolate the matrices of the family.
+    Return both, the `PencilFamily` of the basis, and the weights by which its matrices are interpolated.
     """
     family, weights = designs.family(basis), designs.weights(rows)
     stack = family.stack(weights)
@@ -319,7 +320,8 @@ def critical_speeds_of(
     refinement : Refinement
         The bases; its number of modes is not used.
     single : callable
-        Function that solves designs with given indices one by one, if neither a proof nor a basis decides.
+        Function that solves the designs with given indices one by one.  It is called for those designs for
+        which neither a proof nor the solution in a common basis decides whether they buckle.
     """
     shape = designs.count, 1, 1
     value, error, status = np.full(shape, np.inf), np.zeros(shape), np.full(shape, DOES_NOT_BUCKLE)
@@ -343,7 +345,7 @@ def critical_speeds_of(
 def _search(
     designs: SimilarDesigns, refinement: Refinement, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return critical speeds, their errors, and whether these meet the target, for given designs.
+    """Compute critical speeds of the designs `rows`, their errors, and whether these meet the target.
 
     Each basis is compared with a basis of about half the size, as for a single design.
     """
@@ -358,7 +360,7 @@ def _search(
         found = speeds_of_meeting(stack, coarse, np.zeros(1), 1, top, designs.estimate(basis))
         speed, error, rounding = (values[:, 0, 0] for values in found)
         met = np.isfinite(speed) & (error <= np.maximum(refinement.target_of(basis), 3 * rounding))
-        # If the beam does not buckle in this basis, `single` decides whether it buckles at all.
+        # Designs that do not buckle in this basis are not solved in larger bases, but by `single`.
         return BasisAnswers((speed / time, error, met.astype(float)), met | np.isinf(speed))
 
     speed, error, met = refinement.solve(len(rows), 1, solve)[0] or [np.full(len(rows), np.nan)] * 3
@@ -370,7 +372,7 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
     two = designs.reference.physics.planes == 2
     with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
     if designs.reference.beam.point_masses:
-        # Whether rotation stiffens a beam with point masses is decided design by design.
+        # There is no proof for beams with point masses: `single` decides whether they buckle.
         return np.zeros(designs.count, dtype=bool)
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:

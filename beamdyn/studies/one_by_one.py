@@ -88,7 +88,7 @@ class SingleDesigns(FieldsOnly):
         with statements.unannounced():
             found = [_answer(self.question, *each) for each in zip(designs, self.speeds, strict=True)]
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
-        # Count refused results and results with warnings; only the first of each is quoted.
+        # The warnings count the refused results, and those with warnings; they quote the first of each only.
         refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
         warned = [int(answer.is_warned.sum()) for answer in found]
         without = _caution("there is no answer", designs, refused, [answer.refusals for answer in found])
@@ -158,10 +158,10 @@ def _answer_critical_speed(question: StudyQuestion, scene: Scene, _: np.ndarray)
 
 
 def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> SpeedAnswer:
-    """Find the lowest crossing of each mode with each excitation line."""
+    """Find the lowest speed at which each mode crosses each excitation line."""
     found = resonance_speeds(scene, question.speed, question.modes, 1, question.discretization)
     keys, lowest = [crossing_key(each) for each in found], dict[Any, Any]()
-    for key, crossing in zip(keys, found, strict=True):  # crossings are in the order of ascending speed
+    for key, crossing in zip(keys, found, strict=True):  # by ascending speed: the first one counts
         lowest.setdefault(key, crossing)
     there = {line_key(*each) for each in lines_of(scene, question.speed)}
     shape = 1, question.numbers
@@ -240,7 +240,7 @@ def _at_each(
     warned: np.ndarray | None,
     failed: tuple[str, ...] = (),
 ) -> SpeedAnswer:
-    """Return the result at each given speed, from values, errors and statuses at distinct speeds."""
+    """Build the result at each of `speeds` from values, errors and statuses at the distinct speeds."""
     order = np.unique(speeds, return_inverse=True)[1]
     value, error, status = answer
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -107,5 +107,5 @@ class StudyQuestion:
 
     @property
     def numbers(self) -> int:
-        """Number of numbers in the result of a design."""
+        """How many numbers the result of a design has at each speed."""
         return len(self.labels) if self.what in ("frequencies", "crossings") else 1

@@ -42,7 +42,7 @@ def line_key(kind: str, line: Line) -> tuple[str, float]:
 
 
 def crossing_key(crossing: Crossing | PossibleCrossing) -> tuple[str, float, int]:
-    """Return the key of a crossing, found or possible: line and mode."""
+    """Return a key that matches a crossing that was found with a possible one: kind, multiple, mode."""
     return *line_key(crossing.kind, crossing.line), crossing.mode
 
 
@@ -89,7 +89,9 @@ def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
 
 
 def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[PossibleCrossing, ...]:
-    """List the resonances that may occur in the designs, judged by extreme and evenly spread designs.
+    """List the resonances that may occur in the designs: each excitation line with each mode.
+
+    The lines are those of extreme designs and of some evenly spread ones.
 
     Raises
     ------
@@ -112,7 +114,10 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
 
 
 def _ends_of_columns(designs: Designs) -> list[int]:
-    """Return indices of the smallest and largest value of each input, if inputs are varied together."""
+    """Return the indices of the designs with the smallest and largest value of each input.
+
+    The list is empty if all combinations of the inputs are computed.
+    """
     if designs.combine == "product":
         return []
     return [int(end(each.values)) for each in designs.inputs for end in (np.argmin, np.argmax)]
@@ -190,7 +195,10 @@ def _excited(
 
 
 def _kind_of(name: str, values: np.ndarray) -> np.ndarray:
-    """Classify values of an angle by which of its cosine and sine are zero, and gravity by whether it is."""
+    """Classify values by what decides on excitation lines: an integer or bool for each.
+
+    For gravity that is whether it is 0; for an angle, which of its cosine and sine are 0.
+    """
     if name == "model.gravity":
         return values != 0
     return (np.abs(np.cos(values)) > 1e-15) * 2 + (np.abs(np.sin(values)) > 1e-15)

@@ -42,7 +42,7 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.sensitivities.changes import equations_near
 
-# Exponents of each input in mass per length, bending, axial and second bending stiffness.
+# Exponents with which each input enters mass per length, and bending, axial and second bending stiffness.
 POWERS = {
     "beam.width": (1, 1, 1, 3),
     "beam.thickness": (1, 3, 1, 1),
@@ -71,8 +71,8 @@ SIMILAR = {
     *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
     *_WITHOUT_EFFECT,
 }
-# Quantities on which the matrices depend as polynomials, with the degrees; on "angle" as trigonometric
-# polynomials.
+# Quantities on which the matrices depend, with the degree of the polynomial; in "angle" it is a trigonometric
+# polynomial.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
     **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
@@ -111,8 +111,9 @@ class SimilarDesigns(FieldsOnly):
     columns : mapping of str to ndarray, shape (N,)
         Inputs of each design.
     nodes : tuple of (str, tuple of float), optional
-        Values of each quantity between which matrices are interpolated, if the designs belong to a larger
-        set.
+        Values of each quantity between which matrices are interpolated.  They are given if the designs are a
+        part of a larger set, for whose extremes the matrices are assembled; otherwise they follow from the
+        designs.
     """
 
     reference: Scene
@@ -403,7 +404,10 @@ def _nodes_between(name: str, low: float, high: float) -> tuple[float, ...]:
 
 
 def _weights_of(name: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Compute interpolation weights at x, in rows: functions that are 1 at one of p nodes, else 0."""
+    """Compute the weights (len(x), p) with which values at p nodes are interpolated at x.
+
+    A weight is 1 at its own node, and 0 at the other nodes.
+    """
     if name == "angle" and len(nodes) > 1:
         return (1 + 2 * np.cos(2 * (x[:, None] - nodes))) / 3
     values = np.ones((len(x), len(nodes)))

@@ -79,10 +79,9 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
 
 
 def _said(refusal: ValueError) -> tuple[str, ...]:
-    """State that all slopes are by differences between designs, and why derivatives are not available.
+    """Make a warning that slopes are differences between designs, and why there are no derivatives.
 
-    Empty if the result cannot have derivatives: the critical speed of a beam that does not buckle, and large
-    deflection.
+    It is empty if derivatives cannot be expected: for a beam that does not buckle, and with large deflection.
     """
     if isinstance(refusal, NoModelAnswer) or (
         isinstance(refusal, InvalidValue) and refusal.field == _NONLINEAR
@@ -260,7 +259,10 @@ class _StudyAnswers:
 
     @property
     def _progress(self) -> Progress | None:
-        """Callback for progress over all designs so far; the number of worst cases is not known before."""
+        """Callback for progress, which counts the designs of all calls so far.
+
+        Its total increases with each call, as the number of worst cases is not known beforehand.
+        """
         said, before = self.options["progress"], self._done
         return said if not before else said and (lambda done, total: said(before + done, before + total))
 
@@ -306,7 +308,7 @@ def check_tolerances(
 
 
 def nominal_value(scene: Scene, name: str, speed: float) -> float:
-    """Return the nominal value of an input in SI; `speed` is an argument, as scenes have no such number.
+    """Return the nominal value of an input in SI: a number of the scene, or `speed` for the input "speed".
 
     Raises
     ------

@@ -236,7 +236,10 @@ def check_window(window: tuple[float, float]) -> tuple[float, float]:
 
 
 def _check_scenes(scene: Scene, designs: Designs) -> None:
-    """Raise an error unless all designs are valid scenes; of few inputs, only extreme values are tried."""
+    """Raise an error unless all designs are valid scenes.
+
+    For few inputs it suffices that all combinations of their smallest and largest values are valid.
+    """
     few = len(designs.inputs) <= _MOST_CORNERS
     try:
         for design in designs.extremes() if few else ():
@@ -332,7 +335,7 @@ class _Request:
             _check_scenes(self.question.scene, self.others)
         question = self.question
         if question.what == "crossings" and question.tolerance is not None and not self.is_similar:
-            bound = "crossings of these designs are computed one by one, each as by resonance_speeds"
+            bound = "crossings of these designs are computed by resonance_speeds without a tolerance"
             raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:
@@ -384,7 +387,7 @@ class _Request:
         if not is_batched or not differ_in_numbers_only(scene, names - {"model.damping_ratio"}):
             return False
         if question.what == "crossings" and scene.physics.planes == 2:
-            return False  # each plane of bending has its own excitation lines
+            return False  # each of the two planes has its own excitation lines
         return (
             question.refinement(self._reference).can_be_batched
             and all(self._similar(rows).can_be_solved for rows in self.others.chunks(_AT_ONCE))

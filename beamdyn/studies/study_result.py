@@ -179,14 +179,14 @@ class Study(SceneResult, StatesModelError):
     def _where_unknown(self, name: str) -> str:
         """Say at which designs of `left_out_places` the change by the neglected effect `name` is unknown.
 
-        These are the inputs of the first such design, and the number of others; "" if there is none.
+        The text has the inputs of the first of these designs, and the number of others; "" if there is none.
         """
         nothing = np.isnan(self.left_out_effects.changes[name]).any(axis=1)
         refused = [bool(np.all(self.status[place] == REFUSED)) for place in self.left_out_places]
         unknown = np.flatnonzero(nothing & ~np.array(refused))
         if not unknown.size:
             return ""
-        more = f", and at {len(unknown) - 1} more of the {len(refused)} designs judged,"
+        more = f", and at {len(unknown) - 1} more of {len(refused)} designs that were checked,"
         return Words(self._say_place(int(unknown[0])), more if len(unknown) > 1 else "")
 
     def _say_place(self, i: int) -> Words:
@@ -268,7 +268,7 @@ class Study(SceneResult, StatesModelError):
         return shown
 
     def in_own_words(self, part: Part) -> str | None:
-        """Format an input with its value in the unit that was typed; None for other parts of a text."""
+        """Format an input's value in the unit in which it was typed; None for other parts of a text."""
         if not isinstance(part, InputValue) or part.name not in self.typed_units:
             return None
         return part.said(self.typed_units[part.name].say(part.value))

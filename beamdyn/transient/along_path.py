@@ -86,7 +86,10 @@ class _Residual:
 
     @classmethod
     def of(cls, system: ModalSystem, larger: ModalSystem) -> _Residual | None:
-        """Build the residual of a system's motion; None if `larger` is gyroscopic or lacks modes of it."""
+        """Build the residual of a system's motion in a larger model.
+
+        None if the larger model is gyroscopic, or does not contain the modes of the system.
+        """
         few, many = (_shapes(each.equations) for each in (system, larger))
         stiffness, damping, _ = larger.equations.matrices
         if few.shape[0] != many.shape[0] or not set(damping) <= {"unity"}:
@@ -111,7 +114,7 @@ class _Residual:
         return np.linalg.eigh((values.mean(axis=0) @ flat).reshape(self.larger.size, -1))
 
     def at(self, root: RootMotion, q: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """Evaluate the residual (times, coordinates), for the motion of the root and that of the run."""
+        """Evaluate the residual (times, coordinates) for the motion of the root and the run's state q, v."""
         loads = [getattr(root, name)[:, None] for name in self.larger.equations.vectors]
         parts = [*loads, *(k[:, None] * q for k in self.values(root).T), v]
         return np.concatenate(parts, axis=1) @ self.factors
@@ -189,10 +192,11 @@ def distance_along_path(
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     """Estimate the tip's amplitude [m] of fast modes, excited by jumps of the load's slope at samples.
 
-    Contributions of modes too fast for the run's samples are added as random numbers.
+    Only modes that are too fast for the run's samples count; their contributions are added as random numbers.
 
-    A change of slope excites a mode of angular frequency w with the amplitude change / w^3.  A sudden jump of
-    the load between two samples, a time h apart, seems a slope jump / h, but excites w h times as much.
+    A change of the load's slope excites a mode of angular frequency w with the amplitude change / w^3.  A
+    sudden jump of the load between two samples, a time h apart, looks like a slope jump / h, but excites a
+    mode w h times as much as this slope would.
     """
     middle = steps.piece_start + steps.piece_width / 2
     root = residual.larger.root(middle)
@@ -216,7 +220,7 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """Difference from the larger model in a stretch: largest at the tip [m], final coordinates e, velocities.
+    """Difference from the larger model in a stretch: largest at the tip [m]; e and its rate at the end.
 
     `ringing` is the tip's vibration amplitude [m] in the fast modes, if the stretch begins with a load jump.
     """

@@ -31,8 +31,8 @@ class SweepRequest(FieldsOnly):
     """Checked arguments of `sweep`, from which every case (one final speed) is computed.
 
     All cases share `basis` if it consists of modes at rest; else each case uses modes at the slowest and the
-    fastest speed of its own motion.  Where `modes_at` gives the numbers of modes that some speeds [rad/s]
-    need, ascending, each case uses the larger number of the two neighbouring speeds.
+    fastest speed of its own motion.  `modes_at`, if not empty, has pairs of a speed [rad/s], ascending, and
+    the number of modes that it needs: each case uses the larger number of the two neighbouring speeds.
     """
 
     scene: Scene

@@ -36,7 +36,8 @@ _CHECKED = 64  # number of times at which the equations are checked
 _NEGLIGIBLE = 1e-2  # fraction of the accuracy allowed for the sum of all neglected terms
 _RESOLVED = 12.0  # phase per step [rad] up to which the nodes of a step resolve an exponential
 _MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
-# Number of exponentials of single steps, and of strides of as many steps; their products give one batch.
+# A batch has the square of this number of steps: its exponentials are products of those at this number of
+# successive steps, and those at as many multiples of this number.
 _ROWS = 32
 
 
@@ -117,7 +118,7 @@ def _distinct(frequencies: np.ndarray) -> np.ndarray:
 
 
 def _places(sums: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Find the indices of wanted frequencies among k ascending ones (`sums`); k for one that is missing."""
+    """Find the indices of wanted frequencies among k ascending ones (`sums`); k for a missing one."""
     after = np.searchsorted(sums, wanted - 10 * _SAME * np.abs(sums).max())
     missing = np.abs(np.append(sums, np.inf)[after] - wanted) > 10 * _SAME * np.abs(sums).max()
     return np.where(missing, len(sums), after)
@@ -318,7 +319,7 @@ def _sample(
 
 
 def _evaluate(motion: _Exponentials, h: float, steps: int, stages: int) -> tuple[np.ndarray, np.ndarray]:
-    """Evaluate augmented states at step ends, and accelerations (steps, nodes, coordinates) at nodes."""
+    """Evaluate augmented states (1, q, v) at step ends, and accelerations (steps, nodes, coordinates)."""
     s, n = motion.s, motion.b.shape[1]
     nodes = np.exp(np.multiply.outer(s, h * tableau(stages).c))[:, :, None] * (s**2)[:, None, None]
     at_nodes = (nodes * motion.b[:, None]).reshape(len(s), stages * n)

@@ -59,7 +59,8 @@ _FINER = STAGES + 2  # number of stages of the second run
 _BALANCE = 1e-13  # largest residual, over the largest force or coordinate, that counts as rounding error
 _TIMES_COMPARED = 257  # number of times at which the equilibrium of forces is checked
 _SHORTER = 0.5  # factor by which all steps are shortened after a step that was not solved
-# Phase angle per step of the fastest resolved mode [rad] below which, instead, one more mode is resolved.
+# Phase angle per step of the fastest resolved mode [rad] below which steps are not shortened any further
+# after a step that was not solved; one more mode is resolved instead.
 _SHORT = 1.0
 # Number of smooth pieces of a motion, such as a sampled one, above which no piece is divided further.
 _MANY = 64
@@ -76,7 +77,8 @@ def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float)
     carrier = system.carrier(system.root(t_end * np.sqrt(np.linspace(0, 1, len(still)))))
     force = system.residual(carrier, q, still, still)
     stiffness, size = np.abs(system.elastica.beam.stiffness), np.abs(q[0])
-    # Equilibria are known up to rounding of the coordinates, which means a large force in a stiff mode.
+    # Rounding errors of the coordinates in equilibrium cause a residual force, which is large in a stiff
+    # mode.
     if (np.abs(force) > _BALANCE * ((stiffness @ size).max() + np.diag(stiffness) * size.max())).any():
         return None
     state = np.tile(np.append(1.0, y0), (2, 1))
@@ -122,9 +124,9 @@ def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Estimate the error of the tip deflection, the distance of two runs, and each coordinate's part of it.
+    """Estimate the error of the tip deflection, and the part of each coordinate in it.
 
-    The run `fine` has the same steps as `coarse`, with more stages.
+    It is the distance of the run `coarse` from the run `fine`, which has the same steps with more stages.
     """
     straight, pairs = system.straight, [*zip(coarse, fine, strict=True)]
     change = np.max([np.abs(a.state - b.state).max(axis=0) for a, b in pairs], axis=0)[1 : system.size + 1]

@@ -92,7 +92,7 @@ class TransientHarvest(JudgedByRepeating):
         yield f"time {error_at_most(self.run.time_error / (self.run.largest or 1.0))}"
 
     def judged(self, found: TransientHarvest) -> np.ndarray:
-        """Return the harvested energy, the quantity for which the model error is estimated: shape ()."""
+        """Return the harvested energy of `found`, for which the model error is estimated: shape ()."""
         return np.array(found.energy[-1])
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -131,7 +131,7 @@ def transient_harvest(run: Transient) -> TransientHarvest:
     kind("run", run, Transient, "simulate makes one")
     beam, system = run.scene.beam, run.system
     if beam.electrodes is None or not isinstance(system, ModalSystem):
-        bound = "the beam carries no piezoelectric layers, or deflects largely"
+        bound = "the beam carries no piezoelectric layers, or has large deflection"
         raise InvalidValue("run", run, bound, "Harvester.on puts layers on a beam")
     rows = electric_rows(system.equations, run.request.model.equations, beam)
     voltage, current = (_at(row, run, run.t) for row in rows)

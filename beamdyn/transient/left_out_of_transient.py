@@ -36,7 +36,7 @@ _SHIFT, _PHASE = 1e-4, 1e-2
 _SHORT_RUN = 2000  # number of samples up to which a run is repeated with large deflection
 _BY_BACKBONE = (
     "roughly estimated from the static deflection and the backbone curve: "
-    "where vibration is a large part of the deflection, it may be off by a factor, or in sign"
+    "where vibration is a large part of the deflection, it may be wrong in size or sign"
 )
 
 
@@ -51,7 +51,7 @@ def left_out_of_transient(
     straight = without_large_deflection(problem.model)
     shifts = _shifts_of_frequencies(straight, speed, problem.t_end)
     without = SolvedValues(np.array(largest))
-    if straight is not problem.model:  # effects are compared with a run of the straight, linear beam
+    if straight is not problem.model:  # compare with a run of the straight, linear beam
         without = _run_again(problem, straight.scene, window)
 
     def solve(scene: Scene, name: str) -> SolvedValues:
@@ -81,7 +81,7 @@ def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str
 
 
 def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, speed: float) -> SolvedValues:
-    """Estimate the largest deflection, if large ones are modelled, by static equilibrium and backbone curve.
+    """Estimate the largest deflection of a nonlinear model, from static equilibrium and backbone curve.
 
     The static part is the equilibrium deflection at the largest speed.  The vibration changes in proportion
     to the first mode's compliance: by -2 times the relative change of its frequency.
@@ -104,7 +104,7 @@ def _estimate_bent(problem: TransientProblem, largest: float, scene: Scene, spee
 def _run_again(problem: TransientProblem, scene: Scene, window: tuple[float, float] | None) -> SolvedValues:
     """Compute the largest deflection in a run of another scene with the same number of modes."""
     if not isinstance(problem.initial, str):
-        return SolvedValues(np.array(np.nan), "the initial coordinates are those of this model")
+        return SolvedValues(np.array(np.nan), "the given initial coordinates belong to this model only")
     modes = problem.basis.modes
     discretization = (
         problem.discretization if modes is None else ensure_size(scene, problem.discretization, modes)

@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 _LIMIT_DEFLECTION = 1000.0  # ratio of deflection to length above which the motion counts as unbounded
 _FREE = 1e-9  # least modal stiffness, relative to that with a clamped root, below which the root turns freely
 _REMEDY = "give 'rest' or an array"
-_FINER_MODEL = 1e-3  # ratio of the modes' discretization error to the tolerance
+_FINER_MODEL = 1e-3  # allowed discretization error of the modes, relative to the tolerance
 _Found = TypeVar("_Found")
 
 
@@ -81,7 +81,7 @@ def choose_for_basis(
     if scene.bends_in_space:
         plain = replace(scene.straightened, physics=Physics(planes=scene.physics.planes))
         return Model(scene, choose_for_basis(plain, discretization, basis, tolerance).discretization)
-    if scene.physics.large_deflection:  # the basis consists of modes of the straight beam
+    if scene.physics.large_deflection:  # the basis consists of modes of the straight beam all the same
         return choose_for_basis(scene.straightened, discretization, basis, tolerance).of(scene)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.is_damped:
@@ -293,7 +293,7 @@ def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
     speed = abs(float(root.speed)) or 1.0
     is_bent = system.branch == "bent"
     if is_bent and not root.speed:
-        bound = "at time 0 the beam does not rotate, and no branch but that of the beam at rest exists"
+        bound = "at time 0 the beam does not rotate, so that only the branch of the beam at rest exists"
         raise InvalidValue(
             "initial", "equilibrium", bound, f"{_REMEDY}, or a motion that begins with a speed"
         )

@@ -39,8 +39,8 @@ _SLACK = 1e-6  # fraction of a step by which rounding may lengthen it
 # Largest and smallest number of equal steps whose maps are expanded about one mean motion of the root.
 _EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128
 _SAME_LENGTH = 1e-6  # fraction of a step by which lengths and ends of equal steps may differ
-# Number of pieces (sample intervals) in a step from which on fewer nodes or stages in each piece suffice, and
-# number of these.
+# In steps of at least the first number of pieces (sample intervals), the second number of nodes or stages in
+# each piece suffices.
 _MANY_PIECES, _IN_EACH = 4, 5
 
 
@@ -87,7 +87,7 @@ class RecordSteps:
 
     @classmethod
     def choose(cls, system: ModalSystem, t_end: float, step_size: StepCounter) -> RecordSteps:
-        """Choose steps about as long as the step size allows, which end at samples or divide a piece."""
+        """Choose steps about as long as `step_size` allows, which end at samples or divide a piece evenly."""
         wanted, ends = _wanted_steps(system, t_end, step_size), smooth_piece_ends(system.motion, t_end)
         # Number of steps in each piece.
         parts = np.maximum(1, np.ceil(np.diff(wanted(ends)) - _SLACK).astype(int))
@@ -118,7 +118,7 @@ class RecordSteps:
         return [slice(a, b) for a, b in pairwise(ends)]
 
     def are_equal(self, block: slice) -> bool:
-        """Return whether the steps of a block have one piece each and equal lengths without drift."""
+        """Return whether the steps of a block have one piece each, equal lengths, and evenly spaced ends."""
         ends = np.append(self.start[block], self.start[block.stop - 1] + self.h[block.stop - 1])
         grid = np.linspace(ends[0], ends[-1], len(ends))
         # Neighbouring lengths may differ little, but the differences add up over the block.
@@ -176,12 +176,16 @@ def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounte
 
 
 def _are_same(lengths: np.ndarray) -> np.ndarray:
-    """Tell whether each length equals the next: one entry less."""
+    """Return whether each length equals the next one; the result has one entry less than `lengths`."""
     return np.abs(np.diff(lengths)) <= _SAME_LENGTH * lengths[:-1]
 
 
 def _group(place: list[float]) -> list[int]:
-    """Group pieces with ends `place`, in steps, into steps of length 1 or less; return first indices."""
+    """Group neighbouring pieces into steps; return the index of the first piece of each step.
+
+    The ends of the pieces are given in `place`, in units of the wanted step size.  A step has at most the
+    length 1 in these units, but at least one piece.
+    """
     first = [0]
     while True:
         end = bisect_right(place, place[first[-1]] + 1 + _SLACK) - 1

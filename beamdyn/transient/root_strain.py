@@ -52,7 +52,7 @@ class RootStrain:
             raise ValueError(Words("root_strain needs outer_fibre: ", GIVE_IT))
         if scene.damping.stiffness_factor:
             bound = "the strain of a material that damps is not a function of the moment alone"
-            remedy = "give damping.ratios, or ask frequency_response"
+            remedy = "give damping.ratios, or use frequency_response"
             factor = scene.damping.stiffness_factor
             raise InvalidValue("damping.stiffness_factor", factor, bound, remedy, "s")
         return cls(system, root_moment(scene, discretization, system.equations), strain_per_moment(scene))

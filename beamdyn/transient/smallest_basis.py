@@ -96,7 +96,7 @@ def end_speeds(request: SweepRequest, speeds: tuple[float, ...]) -> np.ndarray:
 
 
 def list_samples(speeds: tuple[float, ...]) -> list[float]:
-    """List the speeds [rad/s] at which `mode_error` is estimated: lowest above 0, highest, and between."""
+    """List speeds [rad/s] at which `mode_error` is estimated: lowest above 0, highest, and some between."""
     slowest = min(1, len(speeds) - 1) if speeds[0] == 0 else 0
     return sorted({speeds[max(slowest, k * (len(speeds) - 1) // 4)] for k in range(5)})
 

@@ -72,9 +72,9 @@ class StepSize:
         The error is proportional to the step size to the power `order`.
         """
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
-        # All modes above this number have a total error below a quarter of the bound.
+        # The modes above this number together have an error below a quarter of the bound.
         modes = int((cumulative > bound / 4).sum())
-        if modes > self.modes:  # the step is only as short as the highest resolved mode requires
+        if modes > self.modes:  # resolve more modes, no more accurately than the highest needs
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
             return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), modes)
         shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / order))

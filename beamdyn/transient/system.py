@@ -104,9 +104,10 @@ class ModalSystem:
         return C, self.equations.matrix(0, root), self.equations.load(root)
 
     def modulated(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into a part that depends on the speed, and a variation.
+        """Split the equations from start to end [s] into slow coefficients and a small varying stiffness.
 
-        The result is None if damping or gyroscopic terms vary with something else than the speed.
+        The slow coefficients depend on the speed only.  The result is None if damping or gyroscopic terms
+        depend on anything else.
         """
         stiffness, damping, _ = self.equations.matrices
         varying: list[Quantity] = [name for name in stiffness if name not in CONSTANT_AT_STEADY_SPEED]

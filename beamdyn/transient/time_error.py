@@ -155,7 +155,8 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
     stiffness that varies within a step, as on a wavy road, transfers the error of one mode to another.
     """
     h, steps, own, more = segment.h, len(segment.acceleration), tableau(STAGES), tableau(STAGES + 2)
-    # The last term of the series has the same size as the interpolation error.
+    # The last term of the polynomial in a step is as large as the interpolation error: it shows the roughest
+    # steps.
     series = own.b * Legendre.basis(STAGES - 1)(2 * own.c - 1)
     last = np.abs(np.einsum("s,ksn->kn", series, segment.acceleration))
     roughest = np.unique(np.argsort(last, axis=0)[-_ROUGHEST:])
@@ -178,7 +179,7 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
-    """Compute the magnitude of a vector by a unit of each coordinate, from its components (rows)."""
+    """Compute the magnitude of a vector that a unit of each coordinate causes, from its components (rows)."""
     return np.hypot.reduce(np.abs(outputs))
 
 
@@ -214,7 +215,7 @@ def local_errors(
     n = len(frequencies)
     residual = np.einsum("kij,kj->ki", step, state) - end_state
     size = np.einsum("kij,kj->ki", np.abs(step), np.abs(state))
-    residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding errors do not add up
+    residual[np.abs(residual) <= _ROUNDING * size] = 0  # rounding errors are random: they do not add up
     error = np.abs(np.einsum("kij,kj->ki", fine - step, state)) + np.abs(residual)
     return np.hypot(error[:, :n], error[:, n:] / frequencies)
 

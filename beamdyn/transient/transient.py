@@ -406,12 +406,12 @@ class TransientRequest(TransientProblem):
 
 
 def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator[Statement]:
-    """Warn of a modal truncation error, over the largest deflection (inf if unknown), above the tolerance.
+    """Warn if the modal truncation error, relative to the largest deflection, exceeds the tolerance.
 
-    The argument `basis` describes the modal basis in words.
+    The error is inf if it is not known; the argument `basis` describes the modal basis in words.
     """
     size = f"{error:.2g} of the largest deflection" if np.isfinite(error) else "not known"
-    more = "and more would take too long or too much memory; a sudden motion excites very many: "
+    more = "and more modes would take too long or too much memory; a sudden motion excites very many: "
     remedy = "give a larger tolerance, a smoother motion, or the number of modes yourself"
     yield from _warn_of_missed(
         "modal truncation error", error, tolerance, f"{size} with {basis}, {more}", remedy
@@ -419,7 +419,7 @@ def warn_of_missed_modes(error: float, tolerance: float, basis: str) -> Iterator
 
 
 def _warn_of_missed(what: str, error: float, tolerance: float, said: str, remedy: str) -> Iterator[Statement]:
-    """Warn of an error, over the largest deflection, above the tolerance; the text `said` states its size."""
+    """Warn if an error, relative to the largest deflection, exceeds the tolerance; `said` states its size."""
     if error > tolerance:
         yield Statement(
             f"tolerance = {tolerance:g} is not reached: the estimated {what} is {said}",

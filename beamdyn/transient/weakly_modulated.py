@@ -217,7 +217,7 @@ class _Expansion:
         for k, (order, factor) in enumerate(zip(orders, monomials, strict=True)):
             values = chebyshev.expand(order())
             size = (np.abs(values * (rows[:, None] * columns)).max(axis=(2, 3)) * factor).sum(axis=1)
-            if len(size) > 1 and size[-1] > allowed:  # more Chebyshev points are needed
+            if len(size) > 1 and size[-1] > allowed:  # these Chebyshev points are too few
                 return None
             rough = k > 0 and size.sum() * _SINGLE_ROUNDING <= allowed
             maps.append(chebyshev.Polynomials(values, size, allowed).shortened(rough))
@@ -259,7 +259,7 @@ class _Block:
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
         """Compute maps of steps from the polynomials' values T at their starts, and from their factors e."""
         rows, columns = self.maps[0].shape[2:]
-        # Sums grouped by precision: single precision where that suffices.
+        # One sum for each precision: terms for which single precision suffices are summed in it.
         sums: dict[np.dtype, np.ndarray] = {}
         for monomials, values in zip(_monomials_by_order(e), self.maps, strict=True):
             kind = values.dtype
@@ -284,7 +284,7 @@ class _Block:
 
 
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Multiply each polynomial in T by each monomial, row by row: the weights for a sum of `values`."""
+    """Multiply each polynomial in T by each monomial, row by row: these are weights for summing `values`."""
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
 
 

@@ -224,7 +224,7 @@ def test_a_random_road_is_warned_of_and_refused_where_it_says_nothing(capsys, fi
     assert found.road is not None and found.road.power[0] == 0 < found.road.power[1]
     said = " ".join(found.warnings)
     assert "the road lacks a spatial frequency that excites the first resonance, at 20 to 50 rad/s" in said
-    assert "with 3 standard deviations on the road, at 50 rad/s: past their limit" in said
+    assert "with 3 standard deviations of the response to the road, at 50 rad/s: past their limit" in said
     assert found.best[1] == pytest.approx(found.power[2] + found.road.power[2], rel=1e-15)
     rough = bd.harvest(SCENE, [100.0], modes=2, road=bd.RoadRoughness("C", highest=10.0))
     assert any("parametric term that is left out would raise" in said for said in rough.warnings)

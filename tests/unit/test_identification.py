@@ -1,4 +1,4 @@
-"""Numbers of a scene from frequencies: found, with intervals, or named as not told."""
+"""Numbers of a scene from frequencies: found, with intervals, or named as not determined."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def test_stiffness_and_density_are_not_told_apart_by_frequencies_alone(uncertain
     assert pair.names == (*MATERIAL,)
     assert "the mass of the beam" in pair.measurements
     assert not any("speed" in each for each in pair.measurements)  # f^2 = (E/rho) a + speed^2 b
-    with pytest.raises(ValueError, match=r"do not tell beam.youngs_modulus, beam.density"):
+    with pytest.raises(ValueError, match=r"do not determine beam.youngs_modulus, beam.density"):
         _ = found.scene_found
 
 

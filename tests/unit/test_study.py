@@ -382,7 +382,7 @@ def test_a_model_error_that_is_not_known_at_several_designs_says_at_how_many():
     vary = {"beam.thickness": [1e-4, 4e-4], "speed": [0.0, 120.0, 130.0]}
     study = bd.study(WITHOUT_CAMBER, vary, modes=1)
     (said,) = study.model_warnings()
-    assert said.startswith("at beam.thickness = 0.0001 m, speed = 120 rad/s, and at 1 more of the 6 designs")
+    assert said.startswith("at beam.thickness = 0.0001 m, speed = 120 rad/s, and at 1 more of 6 designs")
 
 
 @pytest.mark.parametrize("store", ["", "  "])

@@ -132,14 +132,14 @@ def test_a_reference_leaves_half_of_the_budget(clock):
 def test_a_run_past_the_budget_is_given_up_and_named(clock):
     found, skipped = run(clock, clock.case("a", 5.0), clock.case("b", 7.0), clock.case("c", 1.0))
     assert [m.setting for m in found] == ["a"]
-    assert skipped == ["F: b given up after 5 s half-way, and the rest left out"]
+    assert skipped == ["F: b given up after 5 s half-way, and further settings left out"]
     assert clock.now == 10.0
 
 
 def test_what_would_not_fit_is_not_begun(clock):
     found, skipped = run(clock, clock.case("a", 6.0), clock.case("b", 1.0))
     assert [m.setting for m in found] == ["a"]
-    assert skipped == ["F: left out from b on, its 10 s being used up"]
+    assert skipped == ["F: left out from b on, as its share of 10 s is used up"]
 
 
 def test_a_machine_that_was_busy_for_a_moment_ends_no_family(clock, monkeypatch):
@@ -163,7 +163,7 @@ def test_a_failure_is_named(clock):
     broken = clock.case("b", 1.0, ArithmeticError("no such luck"))
     found, skipped = run(clock, clock.case("a", 1.0), broken, clock.case("c", 1.0))
     assert [m.setting for m in found] == ["a"]
-    assert skipped == ["F: b failed (no such luck), and the rest left out"]
+    assert skipped == ["F: b failed (no such luck), and further settings left out"]
 
 
 def test_what_a_family_leaves_goes_to_the_next(clock):

@@ -200,7 +200,10 @@ class _MeasuredRow:
 
     @cached_property
     def of_shapes(self) -> np.ndarray | None:
-        """Modal assurance criterion (m, n) of measured and computed shapes; if none, `likeness_of_kinds`."""
+        """Modal assurance criterion (m, n) of measured and computed shapes.
+
+        If no shapes were measured, it is the result of `likeness_of_kinds`, or None.
+        """
         data, modes = self.data, self.modes
         if data.shapes is None:
             return likeness_of_kinds(data.labels, modes.kinds, len(modes.frequency))
@@ -267,7 +270,8 @@ class _MeasuredRow:
             yield Words(f"mode {k + 1} of the scene, {frequency} at ", Speeds(self.data.speeds[self.row]))
 
 
-# Ratio of given to correct values, as a number and as text (the key), and the possible cause in words.
+# Possible mistakes of units: ratio of given to correct values, as text (the key) and as a number; and in
+# which unit the values would then be.
 _UNITS: Mapping[str, tuple[float, str]] = {
     "2 pi": (2 * pi, "in rad/s, and read as Hz"),
     "60": (60.0, "in 1/min, and read as Hz"),
@@ -276,8 +280,9 @@ _UNITS: Mapping[str, tuple[float, str]] = {
     "1/60": (1 / 60, "in Hz, and read as 1/min"),
     "1/1000": (1e-3, "in kHz, and read as Hz"),
 }
-_ALIKE = 0.1  # largest relative deviation that remains with the right unit: models rarely deviate more
-_LESS = 0.5  # largest scatter that remains with the right unit, over the scatter with the assumed unit
+# Largest relative deviation of data that are read in the right unit: models rarely deviate more.
+_ALIKE = 0.1
+_LESS = 0.5  # largest scatter of the deviations in the right unit, relative to that in a wrong one
 _FEWEST = 2  # smallest number of values needed to detect a common factor
 
 

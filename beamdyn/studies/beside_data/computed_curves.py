@@ -101,7 +101,7 @@ def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
         found = frequency_response(scene, speed, data.frequency, data.input, data.output)
     value = found.response
     if value.shape[1] != 1:
-        bound = "a rotating beam responds to it at two frequencies"
+        bound = "a rotating beam responds to this input at two frequencies"
         raise InvalidValue(
             "input", data.input, bound, "give bending, across, n3 or a force that turns with it"
         )

@@ -20,7 +20,7 @@ from beamdyn.common.words import Words, amount, percent
 from beamdyn.scene.scene import SceneResult
 from beamdyn.studies.beside_data.frequency_comparison import AGREES, LEFT_OUT, NOTHING, OUTSIDE, outside
 
-# Verdict if the numerical error is unknown, or if the model error is as large as the curve.
+# Verdict if the numerical error is unknown, or if the model error is larger than the curve.
 UNKNOWN = "not known"
 _DIGITS = 5  # number of significant digits of values in sentences
 _FEW = 100  # number of values up to which a plot draws them as points
@@ -119,7 +119,7 @@ class CurveComparison(SceneResult):
 
     @property
     def deviation(self) -> np.ndarray:
-        """Largest measured minus largest computed value, divided by the latter; inf if only that is 0."""
+        """Largest measured minus largest computed value, divided by the computed; inf if only this is 0."""
         return _over(self.peak - self.computed_peak, self.computed_peak)
 
     @property
@@ -129,12 +129,12 @@ class CurveComparison(SceneResult):
 
     @property
     def is_turned(self) -> np.ndarray:
-        """Whether a measured curve of opposite sign has less than half the root mean square difference."""
+        """Whether each measured curve, if its sign is reversed, has less than half the rms difference."""
         return self.rms_turned < _TURNED * self.rms
 
     @property
     def rms_turned(self) -> np.ndarray:
-        """Root mean square difference `rms` for the measured curves with opposite sign."""
+        """Root mean square difference, as `rms`, if the signs of the measured curves are reversed."""
         return _over(_rms(self.measured + self.computed), _rms(self.computed))
 
     @property
@@ -208,7 +208,7 @@ class CurveComparison(SceneResult):
         return Speeds(at) if self.along == "speed" else number(at, "s" if self.along == "time" else "Hz")
 
     def _signed(self, k: int) -> str:
-        """State that curve k has the opposite sign of the computed one; empty text if it has not."""
+        """State that measured curve k has the opposite sign of the computed one; empty text otherwise."""
         if not self.is_turned[k]:
             return ""
         left = percent(float(self.rms_turned[k]))
@@ -232,7 +232,7 @@ class CurveComparison(SceneResult):
         lacking = "the numerical error is not known"
         if left_out > _VAIN:
             lacking = f"what the model leaves out ({percent(left_out)}) is more than the curve itself"
-        of_data = f"the data's uncertainty ({percent(own)} of the largest) and " if own > NOTHING else ""
+        of_data = f"the data's uncertainty ({percent(own)} of the maximum) and " if own > NOTHING else ""
         return {
             AGREES: f"within {of_data}the numerical error",
             LEFT_OUT: f"within what the model leaves out ({percent(left_out)})",

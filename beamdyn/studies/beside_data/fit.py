@@ -193,7 +193,8 @@ class FittedModes:
                 for at in (low, self.x[k], high)
             }
             near = {at: equations_near(self.model, scene) for at, scene in scenes.items()}
-            # On one side a point mass may pass a breakpoint, and the number of functions change.
+            # If a point mass passes a breakpoint, the number of basis functions changes: a scene with another
+            # number is left out, and the difference is one-sided.
             (low, a), *_, (high, b) = (
                 (at, e) for at, e in near.items() if e.size == self.model.equations.size
             )
@@ -227,7 +228,9 @@ class Fitted:
 
 @one_blas_thread()
 def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fitted:
-    """Minimize the sum of squares from given variables (p,); pair frequencies again as the scene changes.
+    """Minimize the sum of squares, starting at the variables x; return the fitted modes.
+
+    Measured frequencies are paired with modes again as the scene changes.
 
     Parameters
     ----------
@@ -270,16 +273,17 @@ def fit_from(fitting: Fitting, x: Sequence[float] | np.ndarray, most: int) -> Fi
 
 
 def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> Fitted:
-    """Return the best of several fits, which start where frequencies are nearest to the measured ones.
+    """Return the best of several fits with different starts.
 
-    The starts are chosen among the scene's numbers and random ones, `_TRIED` candidates for each start.
+    The starts are the best of several candidates: the scene's own numbers, and random ones.  The best have
+    the fewest frequencies without a mode, and among these the smallest sum of squared residuals.
 
     Parameters
     ----------
     fitting : Fitting
         The fitting problem.
     starts : int
-        Largest number of starts, chosen as the best of the trial points.
+        Largest number of starts.
     seed : int
         Seed of the random starts.
     most : int
@@ -301,7 +305,7 @@ def fit(fitting: Fitting, starts: int, seed: int, most: int, enough: float) -> F
 
 
 def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
-    """Return variables at which fits start, those with the smallest residuals first."""
+    """Return the variables (p,) at which fits start, those with the smallest sum of squares first."""
     from scipy.stats.qmc import LatinHypercube  # the import is inside the function because it takes long
 
     numbers = fitting.numbers

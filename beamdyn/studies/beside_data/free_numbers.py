@@ -104,10 +104,9 @@ class FreeNumber:
 
 
 def opened(scene: Scene, paths: Sequence[str]) -> Scene:
-    """Return the scene with a finite root spring, or a massless tip body, if a path needs one.
+    """Return the scene with the root springs and the tip body that the paths name, added if it has none.
 
-    The spring, 10 EI/L, or the body is added if a path names a number of a spring or body that the scene
-    lacks.
+    An added spring has the finite stiffness 10 EI/L; an added tip body is massless.
     """
     values: dict[str, float] = {}
     for path in paths:
@@ -124,14 +123,14 @@ def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeN
     Raises
     ------
     ValueError
-        If a path is none of the scene's, or bounds do not ascend or leave the scene's range.
+        If the scene has no number with a path, or bounds do not ascend or exceed what the number may be.
     """
     if not isinstance(free, Mapping) or not free:
         bound = "give the numbers that are unknown, by their names"
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": None}')
     if speed := next((path for path in free if isinstance(path, str) and is_speed(path)), ""):
-        bound = "the speeds are those of the data, no unknown numbers"
-        raise InvalidValue("free", speed, bound, "leave it out, and give the data their speeds")
+        bound = "a speed is given by the data, and cannot be an unknown number"
+        raise InvalidValue("free", speed, bound, "leave it out, and give the data with their speeds")
     paths = [check_path("free", path) for path in free]
     made = numbers_of(opened(scene, paths), paths, "free")
     return tuple(_free(scene, number, free[number.name]) for number in made)

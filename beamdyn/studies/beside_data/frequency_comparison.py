@@ -149,7 +149,7 @@ class FrequencyComparison(SceneResult):
                 worst = int(np.where(verdicts == verdict, off, -1.0).argmax())
                 others = int((verdicts == verdict).sum()) - 1
                 more = (
-                    f"; so {'is' if others == 1 else 'are'} {counted(others, 'other')}, by less"
+                    f"; so {'is' if others == 1 else 'are'} {counted(others, 'other value')}, by less"
                     if others
                     else ""
                 )

@@ -86,7 +86,7 @@ class Identification(SceneResult):
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one-line summary; see `Result.headline`."""
         for name, value, unit in zip(self.names, self.value, self.units, strict=True):
-            said = "not told" if np.isnan(value) else say_value(value, unit, _DIGITS, self.display_units)
+            said = "undetermined" if np.isnan(value) else say_value(value, unit, _DIGITS, self.display_units)
             yield Words(InputName(name), " ", said)
         yield f"scatter {percent(self.scatter)}" if self.scatter > NOTHING else "no scatter"
         yield warned(self.warnings)
@@ -104,7 +104,7 @@ class Identification(SceneResult):
             lost = ", ".join(
                 name for name, value in zip(self.names, self.value, strict=True) if np.isnan(value)
             )
-            raise NoModelAnswer(f"the data do not tell {lost}: keep one of them fixed, or measure more")
+            raise NoModelAnswer(f"the data do not determine {lost}: keep one of them fixed, or measure more")
         return with_numbers(self.scene, dict(zip(self.names, self.value.tolist(), strict=True)))
 
     def to_dict(self) -> dict[str, Any]:
@@ -118,7 +118,7 @@ class Identification(SceneResult):
     def _sentences(self) -> Iterator[str]:
         for each in self.not_separable:
             many = len(each.names) > 1
-            said = "cannot be told apart by these data" if many else "is not told by these data"
+            said = "cannot be told apart by these data" if many else "is not determined by these data"
             more = joined(" or ", each.measurements) if each.measurements else "to keep one of them fixed"
             yield Words(joined(" and ", map(InputName, each.names)), f" {said}. What would help: ", more, ".")
         left_out = float(np.nan_to_num(self.comparison.model_error / self.comparison.computed).max())

@@ -97,7 +97,7 @@ def identify(
     doubts = tuple(doubts_of_unit(measured_rows(scene, data)))
     paired = int((found.pairs != NO_MODE).sum())
     if paired < len(numbers):
-        bound = f"only {paired} of {data.count} frequencies are near modes, for {len(numbers)} unknowns"
+        bound = f"only {paired} of {data.count} frequencies are near modes; unknown numbers: {len(numbers)}"
         remedy = "begin with a scene that is nearer to the data, or give other bounds"
         raise InvalidValue("free", ", ".join(free), bound, "; ".join((*doubts, remedy)))
     return _Told(found, known, doubts).result(start)
@@ -205,7 +205,7 @@ class _Told:
 
     @property
     def _poorness(self) -> float:
-        """Root mean square of the residuals, which is about 1 if the data's uncertainties are right."""
+        """Root mean square of the residuals; about 1 if the uncertainties of the data are right."""
         return float(np.sqrt(self.fit.cost / max(self._freedom, 1)))
 
     @property
@@ -219,7 +219,7 @@ class _Told:
         size, freedom = np.abs(self._standardized), self._freedom
         chance = _CHANCE / max(len(size), 1) / 2
         limit = -special.ndtri(chance)
-        if not self.known or self._is_poor:  # each value is compared with the scatter of all others
+        if not self.known or self._is_poor:  # compare each value with the scatter of the others
             size = np.abs(self._standardized) / (self._poorness if self.known else 1.0)
             if freedom < 2:
                 return
@@ -237,7 +237,7 @@ class _Told:
         if self._is_poor:
             said = f"deviations are {self._poorness:.2g} times the uncertainties of the data"
             yield Statement(
-                f"{said}: the scene does not fit the data, which the intervals do not allow for",
+                f"{said}: the scene does not fit the data, and the intervals do not include this misfit",
                 kind=LIMITS,
             )
         if not self.known and self._freedom <= 0:

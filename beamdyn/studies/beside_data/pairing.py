@@ -54,7 +54,11 @@ def pair(measured: np.ndarray, computed: np.ndarray, likeness: np.ndarray | None
 
 
 def _distances(measured: np.ndarray, computed: np.ndarray) -> np.ndarray:
-    """Compute distances of measured and computed frequencies, over half the gap to the next on that side."""
+    """Compute the distance of each measured from each computed frequency, shape (measured, computed).
+
+    It is the difference of their logarithms, divided by half the gap between the computed frequency and its
+    computed neighbour on the side of the measured one.
+    """
     log, order = np.log(computed), np.argsort(computed)
     apart = np.log(measured)[:, None] - log
     gaps = np.diff(log[order], prepend=log[order[0]] - _BELOW, append=log[order[-1]] + _BELOW)

@@ -1,4 +1,4 @@
-"""Identifiability: which numbers data determine, which not separately, and which data would help.
+"""Identifiability: which numbers the data determine, and which further data would help.
 
 Let J = U S V^T be the derivatives of residuals, over their uncertainties, with respect to the variables of
 size 1.  A change of size 1/s along a column of V, with the singular value s, changes the data by one
@@ -127,7 +127,7 @@ def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]])
 
 
 def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
-    """List the measurements that change along a direction of the variables."""
+    """List the additional measurements whose results change along a direction of the variables."""
     low, high = modes.fitting.limits
     ends = [np.clip(modes.x + step * direction, low, high) for step in (-_STEP, _STEP)]
     change = float(np.linalg.norm(ends[1] - ends[0]))
@@ -150,7 +150,7 @@ def _measured(fitting: Fitting, scene: Scene) -> dict[str, float]:
 
 
 def _frequency(scene: Scene, speed: float = 0.0, mode: int = 1) -> float:
-    """Compute a natural frequency [Hz]; 1 if the mode does not vibrate."""
+    """Compute a natural frequency [Hz]; 1 if the mode does not vibrate, so that it has a logarithm."""
     with unannounced():
         found = float(natural_modes(scene, speed, mode).frequency[mode - 1])
     return found if found > 0 else 1.0

@@ -339,7 +339,7 @@ def _check_speeds(speeds: np.ndarray | Sequence[float]) -> np.ndarray:
 def _check_operation(
     speeds: np.ndarray, rated: float | None, operating: tuple[float, float] | None
 ) -> tuple[float | None, tuple[float, float] | None]:
-    """Return the rated speed and the operating range; raise an error outside the speeds of the diagram."""
+    """Return rated speed and operating range; raise an error if they exceed the speeds of the diagram."""
     if rated is not None:
         rated = _within_speeds("rated", positive("rated", rated, "rad/s"), speeds)
     if operating is None:
@@ -426,7 +426,7 @@ def _warnings(named: Sequence[tuple[str, Sequence[str], Locus]], lines: Sequence
         yield from (after(_prefix(label), warning) for warning in locus.warnings)
         for line, mode in line_crossings.coincident(locus, lines):
             both = f"{names[mode]} and {line.name}"
-            yield f"{_prefix(label)}{both} coincide at every speed, which is no crossing"
+            yield f"{_prefix(label)}{both} coincide at every speed, so there is no crossing"
 
 
 def _prefix(label: str) -> str:

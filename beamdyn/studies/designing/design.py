@@ -147,13 +147,13 @@ class _BestDesign:
         _, error = self.search.known(self.x[None])
         rounded = np.where(np.abs(found) <= np.maximum(_SAME, error.T / DIFFERENCE), 0.0, found)
         level = [k for k in np.flatnonzero((rounded == 0).all(axis=0)).tolist() if not self._is_idle(k)]
-        # If a result is at its maximum or minimum, its derivative vanishes, although the number has an
-        # effect.
+        # Derivatives of all results by these numbers vanish although the numbers have an effect (extrema):
+        # they are kept unrounded, so that the numbers do not count as without effect.
         rounded[:, level] = found[:, level]
         return rounded
 
     def _is_idle(self, k: int) -> bool:
-        """Return whether no result changes when number k moves to the bound farther from its value."""
+        """Return whether number k has no effect: no result changes if it moves to its farther bound."""
         far = self.x.copy()
         far[k] = 0.0 if self.x[k] > 0.5 else 1.0
         with suppress(Spent):

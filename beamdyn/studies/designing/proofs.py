@@ -97,7 +97,7 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Sign (1, -1 or 0) of the change of each target's result with each number; None if not known."""
+        """Whether each target's result rises (1), falls (-1) or stays (0) with a number; None if unknown."""
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
@@ -108,7 +108,7 @@ class Proofs:
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """Return the sign of each number's change that brings a result nearer to target k, or None."""
+        """Return the sign of each number's change that brings its result nearer to target k, or None."""
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 
@@ -120,7 +120,10 @@ class Proofs:
         return f"{' and '.join(told)} {QUOTIENTS[what]}"
 
     def _ruled_out(self) -> Iterator[_RuledOut]:
-        """Yield boxes of designs no better for a target than a computed design that surely misses it."""
+        """Yield boxes of designs that are no nearer to a target than a computed design, a corner of the box.
+
+        That design misses the target by more than twice the error of its result.
+        """
         designs = self.search.designs
         (value, error), missed = self.search.known(designs), self.search.missed(designs)
         sure, excess = np.isfinite(value) & (missed > _SURE * error), self.search.excess(designs)

@@ -200,7 +200,7 @@ class Search:
         return np.where(missed <= _EXACT, 0.0, missed)
 
     def met(self, shares: np.ndarray) -> np.ndarray:
-        """Return which targets designs (in rows) meet within the errors of the results."""
+        """Return whether each design (row) meets each target (column) within the errors of the results."""
         error = self.known(shares)[1]
         return self.missed(shares) <= np.where(np.isfinite(error), error, 0.0)
 
@@ -239,7 +239,7 @@ class Search:
         return self.ranked(self.designs)[0]
 
     def _explore(self, seed: int) -> None:
-        """Compute designs over the ranges of the numbers, which approach the best design."""
+        """Compute first designs over the ranges of the numbers, then ever better ones."""
         self.known(self._first(seed))
         if len(self.own) == 1:
             self._bracket()
@@ -262,7 +262,7 @@ class Search:
             slopes = slopes + np.outer(own, step) / (step @ step)
 
     def _first(self, seed: int) -> np.ndarray:
-        """Return the first designs of a search, in rows: the given scene, and some over the ranges."""
+        """Return the first designs of a search, in rows: the given scene, and some spread over the ranges."""
         p = len(self.own)
         if p == 1:
             return np.unique(np.append(np.linspace(0, 1, _SCANNED), self.own))[:, None]

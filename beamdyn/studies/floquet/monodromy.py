@@ -91,7 +91,7 @@ def period_of(scene: Scene) -> Period:
 
 
 def _is_fraction(ratio: float) -> bool:
-    """Return whether a ratio is, within rounding, a fraction with numerator <= 4096 and denominator <= 64."""
+    """Return whether a ratio is within rounding a fraction with a denominator <= 64 and numerator <= 4096."""
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     return abs(found - Fraction(ratio)) <= _COMMENSURATE * ratio and found.numerator <= _MOST_OTHERS
 
@@ -103,10 +103,10 @@ def _fraction(rate: float, first: float) -> Fraction:
     nearest = min(max(found, Fraction(1, MOST_TURNS)), Fraction(_MOST_OTHERS))
     if not _is_fraction(ratio):
         within = f"{MOST_TURNS} periods of the first and {_MOST_OTHERS} of the other"
-        bound = f"its rates {first:.9g} and {rate:.9g} rad/s do not meet again within {within}"
+        bound = f"its rates {first:.9g} and {rate:.9g} rad/s have no common period within {within}"
         remedy = (
-            f"take the ratio {nearest.numerator}/{nearest.denominator}; floquet_multipliers says of one "
-            "scene with two such rates whether it is stable"
+            f"take the ratio {nearest.numerator}/{nearest.denominator}, or use floquet_multipliers, which "
+            "decides on the stability of a single scene with two such rates"
         )
         raise InvalidValue("scene.motion", ratio, bound, remedy)
     return found

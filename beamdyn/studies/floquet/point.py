@@ -100,7 +100,7 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
 
     @property
     def spectral_radius(self) -> float:
-        """Growth factor of free vibration over a period: by multipliers or, without any, the growth rate."""
+        """Growth factor of free vibration over a period, from the largest multiplier or the growth rate."""
         known = self.method == MULTIPLIERS
         return float(np.abs(self.multipliers[0])) if known else math.exp(self.growth_rate * self.period)
 

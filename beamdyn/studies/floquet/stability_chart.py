@@ -47,7 +47,8 @@ from beamdyn.studies.study import VERSIONS
 _NAMES = "status", "rate", "error", "radius", "period"
 _TASK = 16  # number of scenes in a task
 _JUDGED = 3  # number of values of each number at which the model error is computed
-# Largest relative change of ratios of rates, and of products of period and number, that counts as none.
+# Largest relative variation with which ratios of phase rates, and products of the period and a number, count
+# as constant over the chart.
 _ROUNDING = 1e-12
 _MOST_ENTRIES = 20_000_000  # largest total number of entries of all matrices, so that they fit into memory
 
@@ -302,7 +303,7 @@ class _Grid:
         rows, columns = (sorted({0, n // 2, n - 1}) for n in self.shape)
         scenes = [self.scenes.at(Designs(self.inputs).at(i, j)) for i in rows for j in columns]
         rates = [np.array(rates_of(each)) for each in scenes]
-        # The carrier stands still at one of these points, so that a frequency is missing there.
+        # Where the carrier stands still, the rate of rotation is missing.
         if len({len(each) for each in rates}) > 1:
             return False
         ratios = np.array([each / each[0] for each in rates])
@@ -384,5 +385,5 @@ def _warnings(scene: Scene, status: np.ndarray) -> Iterator[Statement]:
     """Yield warnings about the chart: neglected effects, and undecided points."""
     yield from warn_of_left_out(scene)
     if number := int((status == UNDECIDED).sum()):
-        said = f"at {counted(number, 'point')} of {status.size} the errors allow either: see status"
+        said = f"at {counted(number, 'point')} of {status.size} stability is undecided: see status"
         yield Statement(said, kind=TOLERANCE, quantity="undecided", value=number / status.size)

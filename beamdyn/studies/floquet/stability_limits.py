@@ -153,7 +153,7 @@ def stability_limits(
     shares = np.array([point.place for point in points]).reshape(-1, 2)
     low, high = np.array([each.values[[0, -1]] for each in chart.inputs]).T
     error = np.array([point.error for point in points])
-    method = f"{chart.provenance.method}, limits followed by {tracer.solved} scenes"
+    method = f"{chart.provenance.method}, limits traced by solving {counted(tracer.solved, 'scene')}"
     return StabilityLimits(
         chart=chart,
         curve=np.repeat(np.arange(1, len(curves) + 1), [len(curve) for curve in curves]),

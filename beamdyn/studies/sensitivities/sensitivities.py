@@ -298,13 +298,14 @@ def _compared(
     changes : Changes
         Derivatives of the matrices with respect to n numbers.
     rate : callable
-        Function that computes the derivatives of the results of the model (0) or the coarser one (1) from
-        those of the matrices.
+        Function of k and a `PencilChange` that computes the derivatives of the results from those of the
+        matrices; k is 0 for the model, and 1 for its coarser model.
     scale : ndarray, shape (k,), or float
         Change of the results per relative change of the matrices.
-    part, unit : callable, float
-        Function that extracts the result from a complex derivative, such as its imaginary part, and the unit
-        of the results.
+    part : callable
+        Function that extracts the real result from a complex derivative, such as its imaginary part.
+    unit : float
+        Factor that converts derivatives of angular frequencies to those in the unit of the results.
     """
     shape, of_models = (len(changes.rounding), np.size(scale)), (*enumerate(changes.of), (0, changes.missed))
     fine, coarse, missed = (
@@ -325,7 +326,7 @@ def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
     silent = ~np.isfinite(found.frequency) | (s == 0)
     if silent.any():
         numbers = ", ".join(str(k + 1) for k in np.flatnonzero(silent))
-        words.append(f"mode {numbers} does not vibrate, so that its frequency has no derivative")
+        words.append(f"without vibration (mode {numbers}) there is no derivative of the frequency")
     return crossing | silent, words
 
 

@@ -124,7 +124,10 @@ def _all(scene: Scene) -> Iterator[SceneNumber]:
 
 
 def _value_of(scene: Scene, path: str) -> float | None:
-    """Return the value of a path, if the physics models it; nan where it varies, None if there is none."""
+    """Return the value of the number at a path; nan if it varies along the beam.
+
+    None if the scene has no such number, the physics does not model it, or it follows from other numbers.
+    """
     name = path.removeprefix("beam.")
     if name in SECTION_UNITS:
         return number_at(scene, path) if _has_constant_section(scene) else None
@@ -141,7 +144,7 @@ def _has_constant_section(scene: Scene) -> bool:
 
 
 def _matters(scene: Scene, path: str, value: float) -> bool:
-    """Return whether frequencies depend on a number: not if it is infinite, absent or not modelled."""
+    """Return whether frequencies depend on a number; not if it is infinite, a load, or not modelled."""
     table, _, key = path.partition(".")
     if (
         table in ("motion", "tip_load", SPEED)
@@ -169,7 +172,8 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
     """Describe the input at a path, with the step for its derivative.
 
     The step is 1 % of the value or, if larger, of a typical magnitude, such as the beam's length; 0.01 for
-    angles [rad] and Poisson's ratio; for positions of points, `_room_of` them.
+    angles [rad] and Poisson's ratio; for positions of point masses and springs, the result of
+    `_room_of`.
     """
     unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
     if unit == "rad" or path == "beam.poissons_ratio":
@@ -186,7 +190,10 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
 
 
 def _room_of(beam: Beam, path: str) -> float:
-    """Return how far [m] a point may move along the beam for a derivative; 0 if another point touches it."""
+    """Return how far [m] a point mass or spring may move along the beam for a derivative.
+
+    It is 0 if another point, a breakpoint of the section or an end of the beam is at the same position.
+    """
     field = "point_masses" if "point_mass" in path else "point_springs"
     points, k = getattr(beam, field), int(path.partition("[")[2].partition("]")[0])
     others = replace(beam, **{field: [*points[:k], *points[k + 1 :]]}).breakpoints
@@ -246,11 +253,11 @@ class Sensitivities(SceneResult, JudgedByRepeating):
 
         See `Result.headline`.
         """
-        yield f"{counted(len(self.answers), 'answer')} by {counted(len(self.inputs), 'number')}"
+        yield f"{counted(len(self.answers), 'answer')}, derivatives by {counted(len(self.inputs), 'number')}"
         if self.derivative.size and np.isfinite(self.relative).any():
             size = np.nan_to_num(np.abs(self.relative))
             most = np.unravel_index(int(size.argmax()), size.shape)
-            yield f"most by {self.inputs[most[0]].name}: relative change {number(self.relative[most])}"
+            yield f"largest by {self.inputs[most[0]].name}: relative derivative {number(self.relative[most])}"
         yield warned(self.warnings)
 
     @property
@@ -272,7 +279,10 @@ class Sensitivities(SceneResult, JudgedByRepeating):
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Return derivatives with respect to each result's most important number, for the model error."""
+        """Return the derivative of each result by its most important number, for the model error: shape (k,).
+
+        The derivatives are those of `found`, the analysis of another scene; nan where it lacks the result.
+        """
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)
         return np.array([np.nan if k < 0 else found.derivative[rows[name], k] for k, name in most])

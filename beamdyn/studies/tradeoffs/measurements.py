@@ -331,13 +331,13 @@ def _measure_family(
     for setting in family.settings:
         rest = share - (perf_counter() - start)
         if rest < last:
-            return timed, f"left out from {setting.name} on, its {share:.2g} s being used up"
+            return timed, f"left out from {setting.name} on, as its share of {share:.2g} s is used up"
         try:
             result, times = _time_runs(setting, rest, _REPEATS * share / len(family.settings))
         except TimeoutError as stop:
-            return timed, f"{setting.name} given up after {rest:.2g} s {stop}, and the rest left out"
+            return timed, f"{setting.name} given up after {rest:.2g} s {stop}, and further settings left out"
         except (ArithmeticError, LinAlgError) as failure:
-            return timed, f"{setting.name} failed ({reason_of(failure)}), and the rest left out"
+            return timed, f"{setting.name} failed ({reason_of(failure)}), and further settings left out"
         relative_error, last = error(result), min(times)
         bounded = inf if isnan(relative_error) else max(relative_error, resolved)
         timed.append(_Timed(family.name, setting, bounded, times))

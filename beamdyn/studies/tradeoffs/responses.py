@@ -49,8 +49,8 @@ _STILL = "nothing moves the beam"
 def integrators_diagram(scene: Scene, t_end: float, modes: int = 3, budget: float = 30.0) -> Diagram:
     """Measure error against time of Gauss collocation and the methods of `solve_ivp`, over tolerances.
 
-    All integrate the same modal equations through `simulate`, with a general right-hand side; one that is
-    written for a particular scene would be faster with the methods of `solve_ivp`.
+    All integrate the same modal equations through `simulate`, with a general right-hand side.  The methods of
+    `solve_ivp` would be faster with a right-hand side written for a particular scene.
 
     Parameters
     ----------
