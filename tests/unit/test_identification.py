@@ -90,6 +90,15 @@ def test_stiffness_and_density_are_not_told_apart_by_frequencies_alone(uncertain
         _ = found.scene_found
 
 
+def test_weighing_a_beam_tells_a_point_mass_from_the_stiffness():
+    beam = bd.Beam.from_stiffness(0.05, 0.0157, 1.33e-3, point_masses=[bd.PointMass(0.03, 0.001)])
+    data = bd.MeasuredFrequencies([[50.0], [50.0]], [0.0, 0.0], uncertainty=0.1)  # measured twice
+    unknown = {"beam.bending_stiffness": None, "beam.point_mass[0].mass": None}
+    (pair,) = bd.identify(bd.Scene(beam), data, unknown).not_separable
+    assert pair.names == (*unknown,)
+    assert "the mass of the beam" in pair.measurements
+
+
 @pytest.mark.parametrize(
     ("names", "rows", "told"),
     [

@@ -157,9 +157,10 @@ def _frequency(scene: Scene, speed: float = 0.0, mode: int = 1) -> float:
 
 
 def _mass(scene: Scene) -> float:
-    """Compute the mass of the beam with its tip body [kg]."""
+    """Compute the mass of the beam with its tip body and point masses [kg]."""
     beam = scene.beam
-    return mean(beam.mass_per_length) * beam.length + (0.0 if beam.tip is None else beam.tip.mass)
+    bodies = beam.point_masses if beam.tip is None else (*beam.point_masses, beam.tip)
+    return mean(beam.mass_per_length) * beam.length + sum(body.mass for body in bodies)
 
 
 def _compliance(scene: Scene) -> float:
