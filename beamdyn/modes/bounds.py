@@ -191,8 +191,8 @@ def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
 def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
     why = ": the error of the remaining functions could not be bounded, even with the largest basis"
     missing = "no lower bound of ", why
-    unstable = "", " are unstable: see the bounds of the squares"
-    undecided = "", " may be stable or not: the bounds of the squares enclose zero"
+    unstable = "", ": unstable, see the bounds of the squares"
+    undecided = "", ": stable or unstable, as the bounds of the squares enclose zero"
     for mask, kind, (begin, end) in (
         (np.isnan(lower), NO_ANSWER, missing),
         (upper <= 0, GROWING, unstable),
@@ -201,7 +201,8 @@ def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
         numbers = np.flatnonzero(mask) + 1
         if len(numbers):
             few = ", ".join(map(str, numbers)) if len(numbers) < 6 else f"{numbers[0]} ... {numbers[-1]}"
-            yield Statement(f"{begin}mode(s) {few}{end}", kind=kind)
+            noun = "mode" if len(numbers) == 1 else "modes"
+            yield Statement(f"{begin}{noun} {few}{end}", kind=kind)
 
 
 def _nondimensional(scene: Scene) -> tuple[Scene, float]:
