@@ -100,8 +100,9 @@ def check_path(argument: str, path: object) -> str:
         bound = "the name of an input is a string"
         raise InvalidValue(argument, path, bound, 'give one such as "beam.thickness"')
     if unit_of(path) is None:
-        near = [SPEED] if is_speed(path) else difflib.get_close_matches(path, units(), n=1)
-        raise InvalidValue(argument, path, "unknown input", f"give {near[0] if near else ', '.join(units())}")
+        known = [name.replace("[]", "[0]") for name in units()]
+        near = [SPEED] if is_speed(path) else difflib.get_close_matches(path, known, n=1) or known
+        raise InvalidValue(argument, path, "unknown input", f"give {', '.join(near)}")
     return path
 
 

@@ -419,3 +419,11 @@ def test_each_crossing_of_a_rolling_beam_has_a_head_of_its_own():
     heads = next(iter(rows_of(found)))
     assert len(set(heads)) == len(heads) == 1 + 3 * len(found.labels)
     assert "resonance_speed_rad_per_s_1_road_plus_forced" in heads
+
+
+def test_a_mistyped_number_of_a_list_is_corrected_to_one_that_can_be_typed():
+    beam = bd.Beam.from_stiffness(0.05, 0.0157, 1.33e-3, point_masses=[bd.PointMass(0.03, 0.001)])
+    with pytest.raises(InvalidValue) as refused:
+        bd.study(bd.Scene(beam), {"beam.point_mass.mass": [0.002]})
+    suggested = str(refused.value).rpartition("give ")[2]
+    assert bd.study(bd.Scene(beam), {suggested: [0.002]}).answered.all()
