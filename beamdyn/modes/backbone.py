@@ -18,12 +18,12 @@ from time import perf_counter
 import numpy as np
 
 from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
-from beamdyn.common.inputs.checks import InvalidValue, count, real, within
+from beamdyn.common.inputs.checks import InvalidValue, count, real
 from beamdyn.common.numerics import longer_semi_axis
 from beamdyn.common.results.one_line import error_at_most, number, warned
 from beamdyn.equations.beam_in_space.rotating_beam import BentState
 from beamdyn.equations.root_motion import root_motion
-from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
+from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.modes import provenance_of
@@ -140,7 +140,6 @@ def backbone(
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
     scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
-    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]
     if not (s.imag > 0 and s.real <= 0):

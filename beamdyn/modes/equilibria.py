@@ -12,7 +12,7 @@ from typing import cast
 import numpy as np
 
 from beamdyn.accuracy.refinement import SLOW_BASES
-from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real, within
+from beamdyn.common.inputs.checks import InvalidValue, one_of, positive, real
 from beamdyn.common.plots.plots import plot_branches
 from beamdyn.common.plots.plots_of_shapes import plot_bent_beam
 from beamdyn.common.results.one_line import error_at_most, listed, warned
@@ -20,10 +20,10 @@ from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import GROWING, Speeds, Statement
 from beamdyn.common.words import Words
+from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal import continuation
 from beamdyn.modes.modal.continuation import Loading, NoEquilibrium
 from beamdyn.modes.modal.discretization_choice import (
-    TOLERANCES,
     DiscretizationChoice,
     choose_model,
     solve_to_tolerance,
@@ -134,9 +134,10 @@ class Equilibrium(SceneResult, StatesModelError):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the bent beam in equilibrium."""
         points = self.shape(np.linspace(0, self.scene.beam.length, 201)) / self.scene.beam.length
-        unstable = "" if self.stable else ", unstable"
-        title = f"equilibrium at {self.say_speed(self.speed)}, {self.branch} branch{unstable}"
-        return plot_bent_beam(points[:, 0], points[:, 1:] @ _directions(self.scene.mount)[0], ax, title)
+        stability = "stable" if self.stable else "unstable"
+        title = f"{stability} equilibrium at {self.say_speed(self.speed)}, {self.branch} branch"
+        across, names = _directions(self.scene.mount) @ points[:, 1:].T, modelled_directions(self.scene)
+        return plot_bent_beam(points[:, 0], across, names, ax, title)
 
 
 def equilibrium(
@@ -188,7 +189,6 @@ def equilibrium(
     scene = _with_large_deflection(scene, branch)
     speeds = np.array([real("speed", speed, "rad/s")])
     check_speeds(speeds, "speed")
-    tolerance = None if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     solution = solve_to_tolerance(scene, discretization, speeds, 1, tolerance)
     solver, coarse = solution.model.deflected, cast("DeflectedSolver", solution.model.coarse_solver)
     q = solver.equilibria(speeds)[0]

@@ -21,8 +21,17 @@ from beamdyn.common.results.one_line import counted, error_at_most, spanned, sta
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.results.statements import announced
+from beamdyn.equations.effects import first_drawn
 from beamdyn.modes.modal.discretization_choice import TOLERANCES, DiscretizationChoice, solve_to_tolerance
-from beamdyn.modes.modal.model import BENDING, Model, TellsKinds, kinds_of_modes, plane_share, static_load
+from beamdyn.modes.modal.model import (
+    BENDING,
+    OTHER_KINDS,
+    Model,
+    TellsKinds,
+    kinds_of_modes,
+    plane_share,
+    static_load,
+)
 from beamdyn.modes.modal.solvers import track
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_changes import left_out_with_modes
@@ -140,13 +149,23 @@ class Locus(TellsKinds, SceneResult, StatesModelError):
         kinds = (f", {kind}" if kind != BENDING else "" for kind in self.kind[0])
         return tuple(f"mode {i}{kind}" for i, kind in enumerate(kinds, 1))
 
+    @property
+    def main_motions(self) -> np.ndarray:
+        """Number of the main motion of each mode at each speed: (speeds, modes).
+
+        Bending in the directions that are drawn solid and dashed is 0 and 1; torsion and camber are 2 and 3.
+        """
+        motions = np.where(self.plane_share[:, :, first_drawn(self.scene)] >= 0.5, 0, 1)
+        for number, kind in enumerate(OTHER_KINDS, 2):
+            motions[self.kind == kind] = number
+        return motions
+
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of all modes over speed."""
         units, names = self.display_units, self.names()
         if self.scene.physics.planes == 2:
-            (solid, _), words = drawn_order(self.scene)
-            share = self.plane_share[:, :, solid]
-            return plot_locus_by_plane(self.speeds, self.frequency, share, words, ax, names, units)
+            words, kinds = (*drawn_order(self.scene)[1], *OTHER_KINDS), self.main_motions
+            return plot_locus_by_plane(self.speeds, self.frequency, kinds, words, ax, names, units)
         return plot_locus(self.speeds, self.frequency, ax, names, units=units)
 
 

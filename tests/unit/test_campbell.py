@@ -135,8 +135,8 @@ def test_in_plane_of_a_pitched_blade_is_edge() -> None:
     mount = replace(TWO_PLANES.mount, bending_angle=math.radians(5))
     (names,) = bd.campbell(replace(TWO_PLANES, mount=mount), SPEEDS[:2], modes=4).names
     assert names == ("edge 1", "flap 1", "edge 2", "flap 2")
-    bent = bd.frequency_locus(replace(TWO_PLANES, mount=mount), SPEEDS[:2], 1)
-    assert "flap" in bent.plot(Figure().subplots()).get_legend().get_texts()[1].get_text()
+    bent = bd.frequency_locus(replace(TWO_PLANES, mount=mount), SPEEDS[:2], 2)
+    assert "flap" in bent.plot(Figure().subplots()).get_legend().get_texts()[2].get_text()
 
 
 def test_margins_are_those_of_the_frequencies(of_two_planes: bd.Campbell) -> None:
@@ -456,3 +456,18 @@ def test_mistakes_are_named(run, case: str) -> None:
     code, _, err = run("campbell", *arguments)
     assert code == BAD_INPUT
     assert all(part in err for part in parts), err
+
+
+def test_torsion_has_a_line_of_its_own() -> None:
+    strip = bd.Beam.rectangular(0.1, 0.03, 0.001, 200e9, 7850.0, poissons_ratio=0.3)
+    plate = bd.Scene(strip, bd.Mount(0.1, np.pi), physics=bd.Physics(2, camber=True, torsion=True))
+    ax = bd.campbell(plate, np.linspace(0, 600, 5), modes=3).plot(Figure().subplots())
+    legend = {text.get_text() for text in ax.get_legend().get_texts()}
+    assert {"mostly edge", "mostly torsion"} <= legend
+    assert "mostly flap" not in legend  # no such mode is drawn
+    dotted = [
+        line.get_ydata()[0]
+        for line in ax.get_lines()
+        if line.get_linestyle() == ":" and len(line.get_ydata())
+    ]
+    assert dotted == pytest.approx([560], rel=0.02)  # Hz: torsion 1 alone

@@ -50,6 +50,18 @@ def test_out_of_the_plane_the_tip_leaves_it() -> None:
     assert abs(tip[2]) > 0.5 * scene.beam.length
 
 
+def test_a_picture_of_a_beam_in_space_shows_both_directions() -> None:
+    beam = bd.Beam.from_stiffness(
+        1.0, 1.0, 10.0, second_bending_stiffness=30.0, torsion_stiffness=5.0, rotary_inertia=1e-3,
+        second_rotary_inertia=1e-3, sweep=np.polynomial.Polynomial([0, 0, 0.3]),
+    )  # fmt: skip
+    physics = bd.Physics(2, torsion=True, large_deflection=True)
+    found = bd.equilibrium(bd.Scene(beam, bd.Mount(0.5, np.pi), physics=physics), 3.0)
+    ends = [float(line.get_ydata()[-1]) for line in found.plot().get_lines()[:2]]
+    assert ends == pytest.approx(found.tip[1:], abs=1e-12)  # over a length of 1 m
+    assert abs(ends[1]) > 0.05
+
+
 def test_error_covers_a_finer_model() -> None:
     scene = harvester(5.0)
     coarse, fine = (bd.equilibrium(scene, 200.0, discretization=bd.Ritz(n)) for n in (8, 24))

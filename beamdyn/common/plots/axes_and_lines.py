@@ -12,6 +12,8 @@ import numpy as np
 from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, DASHES, Axes, Figure, add_legend, new_axes
 
+# Line styles by the main motion of a mode: bending in two directions, torsion, camber.
+MOTION_DASHES = "-", "--", ":", "-."
 _LETTERS = 15.0  # characters of a note that fit into an inch
 _COLOUR = "#5a4200"  # text colour of the notes
 
@@ -99,11 +101,11 @@ def _is_isolated(y: np.ndarray) -> np.ndarray:
     return known[1:-1] & ~known[:-2] & ~known[2:]
 
 
-def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, solid: np.ndarray, style: dict[str, Any]) -> None:
-    """Draw a line that is solid at samples where `solid` is true, else dashed, without gaps in between."""
-    starts, isolated = [0, *(np.flatnonzero(np.diff(solid)) + 1).tolist()], _is_isolated(y)
+def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, kinds: np.ndarray, style: dict[str, Any]) -> None:
+    """Draw a line whose dashes are `MOTION_DASHES[kinds[i]]` from sample i on, without gaps in between."""
+    starts, isolated = [0, *(np.flatnonzero(np.diff(kinds)) + 1).tolist()], _is_isolated(y)
     for start, stop in zip(starts, [*(s + 1 for s in starts[1:]), len(x)], strict=True):
-        piece, dashes = slice(start, stop), "-" if solid[start] else "--"
+        piece, dashes = slice(start, stop), MOTION_DASHES[kinds[start]]
         _draw_line(ax, x[piece], y[piece], isolated[piece], linestyle=dashes, **style)
 
 
@@ -119,10 +121,10 @@ def name_colour(ax: Axes, label: str, i: int) -> None:
     ax.plot([], [], label=label, color=style["color"], linewidth=3 * style["linewidth"])
 
 
-def name_planes(ax: Axes, words: Sequence[str]) -> Axes:
-    """Add entries for solid and dashed lines to the legend, and draw the legend."""
-    for dashes, text in zip(("-", "--"), words, strict=True):
-        ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=text)
+def name_planes(ax: Axes, words: Sequence[str], drawn: np.ndarray | None = None) -> Axes:
+    """Add the meanings of `MOTION_DASHES` to the legend, all or those numbered `drawn`; draw the legend."""
+    for k in range(len(words)) if drawn is None else np.unique(drawn):
+        ax.plot([], [], linestyle=MOTION_DASHES[k], color="0.3", linewidth=1.8, label=words[k])
     return add_legend(ax)
 
 

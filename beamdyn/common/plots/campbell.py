@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.plots.axes_and_lines import draw_by_plane, set_up_axes, style_by_plane
+from beamdyn.common.plots.axes_and_lines import MOTION_DASHES, draw_by_plane, set_up_axes, style_by_plane
 from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes
 
@@ -44,18 +44,18 @@ class Curves:
         Names of the modes.
     label : str
         Label of the scene in the legend.
-    solid : ndarray of bool, shape (S, m), optional
-        Whether the curve of a mode is solid at each speed, else dashed.
-    directions : tuple of str, optional
-        Meanings of solid and of dashed lines, for the legend.
+    kinds : ndarray of int, shape (S, m), optional
+        Index of the main motion of a mode at each speed, in `words` and in `axes_and_lines.MOTION_DASHES`.
+    words : tuple of str
+        The motions in words, for the legend: "flap", "edge", "torsion".
     """
 
     speeds: np.ndarray
     frequency: np.ndarray
     names: tuple[str, ...]
     label: str = ""
-    solid: np.ndarray | None = None
-    directions: tuple[str, str] | None = None
+    kinds: np.ndarray | None = None
+    words: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -177,15 +177,14 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
     A curve that ends before the right edge is labelled at its start.
     """
     for k, curves in enumerate(scenes):
-        solid = np.ones(curves.frequency.shape, bool) if curves.solid is None else curves.solid
+        kinds = np.zeros(curves.frequency.shape, int) if curves.kinds is None else curves.kinds
         x = factor * curves.speeds
-        for i, (y, dashes, name) in enumerate(zip(curves.frequency.T, solid.T, curves.names, strict=True)):
+        for i, (y, motion, name) in enumerate(zip(curves.frequency.T, kinds.T, curves.names, strict=True)):
             style = style_by_plane(i if len(scenes) == 1 else k)
-            draw_by_plane(ax, x, y, dashes, style)
+            draw_by_plane(ax, x, y, motion, style)
             if np.isfinite(y[-1]) and y[-1] <= top:
-                changed = curves.directions if dashes[0] != dashes[-1] else None
-                # The direction in which the mode mainly bends at the highest speed is named.
-                more = f" ({changed[0 if dashes[-1] else 1]})" if changed else ""
+                # The main motion at the highest speed is named if it is another one than at the lowest.
+                more = f" ({curves.words[motion[-1]]})" if motion[0] != motion[-1] else ""
                 yield _CurveName(name + more, float(y[-1]), style["color"])
             elif (shown := np.flatnonzero(np.isfinite(y) & (y <= top))).size:
                 place = {"xytext": (4, 3), "textcoords": "offset points", "color": style["color"]}
@@ -195,9 +194,14 @@ def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -
                 ax.annotate(name, (x[shown[0]], y[shown[0]]), fontsize=9, path_effects=halo, **place)
         if len(scenes) > 1:
             ax.plot([], [], color=COLOURS[k % len(COLOURS)], linewidth=3, label=curves.label)
-    directions = next((curves.directions for curves in scenes if curves.directions), ())
-    for dashes, direction in zip(("-", "--"), directions, strict=False):
-        ax.plot([], [], dashes, color="0.3", linewidth=1.8, label=f"mostly {direction}")
+    shown = {
+        curves.words[kind]: kind
+        for curves in scenes
+        if curves.kinds is not None
+        for kind in np.unique(curves.kinds[curves.frequency <= top])
+    }
+    for word, kind in shown.items():
+        ax.plot([], [], linestyle=MOTION_DASHES[kind], color="0.3", linewidth=1.8, label=f"mostly {word}")
 
 
 def _name_hidden(ax: Axes, scenes: Sequence[Curves], top: float) -> None:

@@ -175,22 +175,22 @@ def mark_points(
 def plot_locus_by_plane(
     speeds: np.ndarray,
     frequency: np.ndarray,
-    share: np.ndarray,
-    directions: tuple[str, str],
+    kinds: np.ndarray,
+    words: Sequence[str],
     ax: Axes | None = None,
     labels: Sequence[str] | None = None,
     units: DisplayUnits = SI_UNITS,
 ) -> Axes:
-    """Draw natural frequencies over speed, solid where a mode mainly bends in one direction, else dashed.
+    """Draw natural frequencies over speed, with dashes that show the main motion of each mode.
 
     Parameters
     ----------
     speeds, frequency, ax, labels, units
         As for `beamdyn.common.plots.plots.plot_locus`.
-    share : ndarray, shape (speeds, modes)
-        Fraction of each mode's energy in the first direction; a curve is solid where it is 1/2 or more.
-    directions : tuple of str
-        The two directions in words, for the legend.
+    kinds : ndarray of int, shape (speeds, modes)
+        Index of the main motion of each mode, in `words` and in `axes_and_lines.MOTION_DASHES`.
+    words : sequence of str
+        The motions in words, for the legend: two directions of bending, and others such as torsion.
 
     Returns
     -------
@@ -199,12 +199,11 @@ def plot_locus_by_plane(
     speeds = units.speed_unit().of(np.asarray(speeds))
     ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), "natural frequency [Hz]")
     names = labels or _number_modes(np.shape(frequency)[1])
-    columns = zip(np.transpose(frequency), np.transpose(share) >= 0.5, names, strict=True)
-    for i, (y, solid, label) in enumerate(columns):
-        axes_and_lines.draw_by_plane(ax, speeds, y, solid, axes_and_lines.style_by_plane(i))
+    for i, (y, of_mode, label) in enumerate(zip(np.transpose(frequency), kinds.T, names, strict=True)):
+        axes_and_lines.draw_by_plane(ax, speeds, y, of_mode, axes_and_lines.style_by_plane(i))
         axes_and_lines.name_colour(ax, label, i)
     ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
-    return axes_and_lines.name_planes(ax, [f"mostly {direction}" for direction in directions])
+    return axes_and_lines.name_planes(ax, [f"mostly {word}" for word in words], kinds)
 
 
 def plot_response(

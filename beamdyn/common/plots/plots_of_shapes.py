@@ -176,12 +176,33 @@ def _set_up_shapes(ax: Axes | None, units: DisplayUnits = SI_UNITS) -> Axes:
     return ax
 
 
-def plot_bent_beam(along: np.ndarray, across: np.ndarray, ax: Axes | None = None, title: str = "") -> Axes:
-    """Draw a deflected beam to scale, from its coordinates (along and across) divided by its length."""
+def plot_bent_beam(
+    along: np.ndarray, across: np.ndarray, directions: Sequence[str], ax: Axes | None = None, title: str = ""
+) -> Axes:
+    """Draw a deflected beam to scale, seen in one or two directions.
+
+    Parameters
+    ----------
+    along : ndarray, shape (n,)
+        Coordinates of n points along the beam at rest, over its length.
+    across : ndarray, shape (2, n)
+        Coordinates across it, over its length, in two directions.
+    directions : sequence of str, length 1 or 2
+        The directions that are drawn, in words; if there are two, they are named in the legend.
+    ax : Axes, optional
+        Axes to draw on; new axes if not given.
+    title : str
+        Title of the axes.
+
+    Returns
+    -------
+    Axes
+    """
     ax = axes_and_lines.new_axes() if ax is None else ax
-    ax.plot(along, across, color=COLOURS[0])
+    for row, dashes, _ in zip(across, axes_and_lines.MOTION_DASHES, directions, strict=False):
+        ax.plot(along, row, dashes, color=COLOURS[0])
     ax.plot([0, 1], [0, 0], color="0.7", linewidth=0.8)
     labels = {"xlabel": "along the beam at rest, over its length", "ylabel": "deflection over the length"}
     ax.set(title=title, **labels)
     ax.set_aspect("equal", adjustable="datalim")  # the curve fills the axes even if the beam bends little
-    return ax
+    return axes_and_lines.name_planes(ax, directions) if len(directions) > 1 else ax

@@ -71,7 +71,7 @@ def solve_to_tolerance(
     Without a tolerance, `choose_model` is called with `DEFAULT_TARGET`.  The other parameters are as for
     `choose_model` and `solve_with_error`.
     """
-    target = DEFAULT_TARGET if tolerance is None else tolerance
+    target = DEFAULT_TARGET if tolerance is None else within("tolerance", tolerance, *TOLERANCES)
     model, at_ends = _choose(scene, discretization, speeds, modes, target, tolerance is not None)
     if at_ends is not None and len(speeds) == 1 and not extra:
         result = at_ends
@@ -80,7 +80,7 @@ def solve_to_tolerance(
     if tolerance is None or not isinstance(discretization, str):
         return result
     finer = partial(_solve_finer, speeds=speeds, modes=modes, extra=extra)
-    return refine(result, finer, lambda found: found.meet(tolerance))
+    return refine(result, finer, lambda found: found.meet(target))
 
 
 def _solve_finer(
@@ -153,7 +153,6 @@ def model_to_tolerance(
     """Choose the model as `solve_to_tolerance` does or, without a tolerance, as `choose_model` does."""
     if tolerance is None:
         return choose_model(scene, discretization, speeds, modes)
-    tolerance = within("tolerance", tolerance, *TOLERANCES)
     return solve_to_tolerance(scene, discretization, speeds, modes, tolerance).model
 
 

@@ -400,6 +400,7 @@ def _orthonormal(M: np.ndarray, shapes: np.ndarray) -> np.ndarray:
 # Kinds of modes --------------------------------------------------------------------------------------
 
 BENDING, TORSION, CAMBER = "bending", "torsion", "camber"
+OTHER_KINDS = TORSION, CAMBER
 _TIE = 1e-9  # relative difference of kinetic energies below which the first kind is chosen
 
 
@@ -409,7 +410,7 @@ def kinds_of_modes(equations: Equations, vectors: np.ndarray) -> np.ndarray | No
     Bending in both directions, torsion and camber are compared, and ties within 1e-9 go to the first; the
     energy of stretch is not compared.  None if a model has neither torsion nor camber.
     """
-    own = [name for name in (TORSION, CAMBER) if name in equations.blocks]
+    own = [name for name in OTHER_KINDS if name in equations.blocks]
     if not own:
         return None
     energy = np.real(vectors.conj() * equations.momentum(vectors))

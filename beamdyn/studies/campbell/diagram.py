@@ -21,7 +21,7 @@ from beamdyn.equations.effects import first_drawn, name_directions
 from beamdyn.modes.bounds import FrequencyBounds, frequency_bounds
 from beamdyn.modes.locus import Locus, frequency_locus
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.modes.modal.model import BENDING
+from beamdyn.modes.modal.model import BENDING, OTHER_KINDS
 from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion import Line
@@ -163,9 +163,8 @@ class Campbell(SceneResult, StatesModelError):
         if locus.scene.physics.planes == 1:
             return Curves(locus.speeds, locus.frequency, names, label)
         drawn, words = first_drawn(locus.scene), name_directions(locus.scene)
-        solid = locus.plane_share[:, :, drawn] >= 0.5
-        directions = words[drawn][1], words[1 - drawn][1]
-        return Curves(locus.speeds, locus.frequency, names, label, solid, directions)
+        meanings = words[drawn][1], words[1 - drawn][1], *OTHER_KINDS
+        return Curves(locus.speeds, locus.frequency, names, label, locus.main_motions, meanings)
 
     def _marked(self) -> dict[str, list[tuple[float, float]]]:
         """Return points (speed, frequency) of the crossings, by the name in the legend."""
