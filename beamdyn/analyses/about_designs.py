@@ -93,7 +93,7 @@ def sensitivities(
         result = bd.crossing_sensitivities(scene, top, count, named, order or 1, discretization)
     each = zip(result.answers, np.isfinite(result.value), strict=True)
     lost = " and ".join(name for name, known in each if not known)
-    return Answer(result, lost and f"{lost}: no such frequency, and no derivative of it")
+    return Answer(result, lost and f"{lost}: no finite value, and so no derivative")
 
 
 # Studies ---------------------------------------------------------------------------------------------
@@ -204,10 +204,13 @@ def _speed_of(scene: bd.Scene, what: str, speed: str | None, axes: Sequence[Axis
 
 
 def inputs_of(scene: bd.Scene) -> list[Input]:
-    """Return descriptions, as inputs of a file, of the numbers that a study may vary, and of the speed."""
+    """Return the inputs that a study may vary, numbers of the scene file and the speed, with descriptions."""
 
     class ByWholeName(Input):
-        """Input named by its path without "beam.": a factor of a property along the beam, or a list entry."""
+        """An input without a key of its own in a file; its path without "beam." serves as its name.
+
+        Such inputs are the factor of a property that varies along the beam, and an entry of a list.
+        """
 
         @property
         def name(self) -> str:

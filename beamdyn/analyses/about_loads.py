@@ -47,10 +47,10 @@ class CycleOptions:
         In a transient: also count the cycles of this quantity, where it is largest (rainflow counting, ASTM
         E1049; needs the extra fatigue).
     woehler : str, optional
-        Of these cycles: the range of equal cycles that do the same damage (Miner), for exponents m of the
-        Woehler (S-N) curve, e.g. "3, 5, 10".
+        Exponents m of the Woehler (S-N) curve, e.g. "3, 5, 10"; with --cycles. For each the result states the
+        range of cycles of equal size that do the same damage as the counted ones, by Miner's rule.
     equivalent_cycles : float, optional
-        Number of these equal cycles; default: 1.
+        Number of these cycles of equal size; default: 1.
     cycles_file : Path, optional
         Write range, mean and count of each cycle into this file: .csv, .tsv, .txt or .json.
     """

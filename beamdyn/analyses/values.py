@@ -49,7 +49,7 @@ def at_most(most: int) -> Parameter:
 
 
 def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
-    """Read a number with its unit, in SI units; an InvalidInput names the option."""
+    """Read a number with its unit, in SI units; raise InvalidInput with the option's name if it is none."""
     try:
         return quantity(text, of) if isinstance(of, str) else of.convert(text)
     except InvalidInput as error:
@@ -65,7 +65,7 @@ def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = N
 
 
 def parse_speed(option: str, text: str, scene: bd.Scene | None = None) -> float:
-    """Read a speed with its unit [rad/s]; a ValueError names the option.
+    """Read a speed with its unit [rad/s]; raise ValueError with the option's name if it is none.
 
     For a scene with a rolling wheel, the text may be the velocity of the vehicle, such as "60 km/h".
     """
@@ -192,5 +192,5 @@ def check_moves(scene: bd.Scene, path: Path) -> None:
     """Raise an error for a scene without a motion."""
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
-        sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"
+        sentence = f"motion: missing, but this analysis needs it: give a table [motion], e.g. with {example}"
         raise ConfigError(str(path), [sentence], ["motion"])

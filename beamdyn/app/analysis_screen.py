@@ -32,7 +32,7 @@ from beamdyn.common.screens.screens import Screen
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_FEW_MODES = 6  # number of modes of a preliminary result, if that of the full result follows from a tolerance
+_FEW_MODES = 6  # number of modes of a preliminary result, if the full result chooses its own by a tolerance
 _HEADLINES = 3  # largest number of parts of a result's one-line summary that a screen shows
 _NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
 _OF_COMMANDS = (
@@ -71,7 +71,10 @@ def analysis_screen(analysis: Analysis) -> Screen:
         return answer.result
 
     def headline(answer: Answer) -> Iterator[KeyResult]:
-        beside = "", warned(getattr(answer.result, "warnings", ()))  # without warnings, which are shown below
+        beside = (
+            "",
+            warned(getattr(answer.result, "warnings", ())),
+        )  # omitted: the screen shows warnings below
         lines = (line for line in answer.result.headline() if line not in beside)
         yield KeyResult("in short", "; ".join(map(in_files, islice(lines, _HEADLINES))))
 

@@ -210,7 +210,7 @@ def headline(answer: Playable) -> Iterator[KeyResult]:
 
 TRANSIENT = scene_screen(
     "Transient",
-    "The motion from rest: the beam, and its tip over time.",
+    "Motion of the beam from rest, and the deflection of its tip over time.",
     solve,
     ("run",),
     result=lambda answer: answer.run,

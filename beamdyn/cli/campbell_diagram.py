@@ -88,7 +88,8 @@ def campbell(
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
-    alone = inputs[0].scene if len(inputs) == 1 else None  # of several scenes, speeds in km/h are undefined
+    # A speed in km/h needs the rolling radius of one scene: with several scenes it is refused.
+    alone = inputs[0].scene if len(inputs) == 1 else None
     bent = any(given.scene.physics.large_deflection for given in inputs)
     speeds, unit = parse_top(top_speed, alone, bent)
     question = _question(

@@ -29,7 +29,7 @@ def warnings_of(result: Any, tolerance: float | None = None, without: str = "") 
 
 
 def _words_of(result: Any) -> Callable[[Part], str]:
-    """Return the function that words parts of a text: in the result's units, with names as in files."""
+    """Return a function that formats a part of a text: in the result's units, input names as in files."""
     units = result.display_units if isinstance(result, Result) else SI_UNITS
     own: Callable[[Part], str | None] = getattr(result, "in_own_words", lambda part: None)
     return lambda part: in_files(own(part) or in_terms(part, units))

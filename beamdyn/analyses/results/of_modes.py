@@ -44,7 +44,10 @@ def said_of_model(result: Result, sentence: str) -> str:
 
 
 def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str = "") -> str:
-    """Return the sentence below a table over speeds: neglected effects, each at its worst speed."""
+    """Return the sentence below a table over speeds: the changes by neglected effects, where largest.
+
+    `what` is a noun for several values at one speed, such as "mode"; empty if there is one value.
+    """
     effects, speeds = result.left_out_effects, result.left_out_speeds
     return said_of_model(result, effects.sentence(what, where_worst(effects, speeds), speeds))
 
@@ -100,7 +103,7 @@ def modes_columns(result: bd.Modes) -> Columns:
 
 
 def _circuit(result: bd.Modes | bd.Locus) -> str:
-    """Return whether the modes of a harvester are for open or short circuit; empty for other beams."""
+    """Return words on whether the modes of a harvester are for open or short circuit; "" for other beams."""
     electrodes = result.scene.beam.electrodes
     if electrodes is None:
         return ""
@@ -174,9 +177,10 @@ def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
 
 
 def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
-    """Format the frequency of a mode at speed s, or, if it is unstable, its status and growth rate.
+    """Format the frequency of a mode at the speed with index s; of an unstable mode, status and growth rate.
 
-    Digits smaller than the model error [Hz] are dimmed.
+    `size` (speeds, modes) is the absolute error of the eigenvalues [rad/s].  Digits smaller than the model
+    error [Hz] are dimmed.
     """
     if result.status[s, mode] not in ("stable", "neutral"):
         return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
@@ -379,7 +383,7 @@ def rotor_table(result: bd.RotorDrawing) -> Group:
 
 
 def rotor_csv(result: bd.RotorDrawing) -> Columns:
-    """Make columns of the drawn beam edge in the plane of rotation, and of the thickness magnification."""
+    """Make columns of x and y [m] along the drawn beam's outline, and of the thickness magnification."""
     rows = ((x, y, result.magnification) for x, y in result.outline.tolist())
     return columns_of_rows((("x", "m"), ("y", "m"), "depth_magnification"), rows)
 

@@ -51,7 +51,7 @@ def transient_table(run: bd.Transient, window: tuple[float, float] | None = None
     modes = f"modal truncation error {size}"
     if math.isnan(run.time_error):
         errors = (
-            "The time-integration error is not estimated: this integrator bounds that of single steps only. "
+            "The time-integration error is not estimated: this integrator bounds errors of single steps. "
             f"Estimated {modes}."
         )
     else:
@@ -116,7 +116,10 @@ def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, p
 def _deflections(
     result: bd.SteadyResponse | bd.Sweep, error: np.ndarray, **sizes: np.ndarray
 ) -> Iterator[Column]:
-    """Yield columns of speeds and deflections; digits smaller than the model error are dimmed."""
+    """Yield columns of speeds and of deflections; digits smaller than the model error are dimmed.
+
+    `sizes` are the deflections [m] by the names of their columns, `error` is their absolute error [m].
+    """
     words = dict(zip(of_modes.csv_directions(result.scene), words_of_directions(result.scene), strict=True))
     yield Column("speed", result.speeds, "rad/s", form=".8g")
     beyond, form = of_modes.between_speeds(result, result.model_error), partial(supported, most=_DIGITS)
@@ -230,7 +233,7 @@ def _velocity(result: bd.Harvest) -> Iterator[Column]:
 
 
 def _road_columns(result: bd.Harvest) -> tuple[Column, ...]:
-    """Make the columns for a random road; empty without a road."""
+    """Make the columns of mean power and rms values on the random road; empty if there is no such road."""
     if (road := result.road) is None:
         return ()
     of_rms = road.error / 2

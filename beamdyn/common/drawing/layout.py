@@ -242,7 +242,11 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
 def _with_list(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
-    """Return the labels without a free place, which are listed below, texts, leader lines, and the scale."""
+    """Return the labels that are listed below the drawing, all texts, leader lines, and the scale.
+
+    Labels without a free place are listed; numbers mark their points.  The texts are those of labels in the
+    drawing and of the list.
+    """
     listed, bottom, fit, places = _make_room(drawing, inner, fit, places, held)
     numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
     texts, rules = [], []

@@ -95,7 +95,10 @@ class MissingValue(InvalidValue):
 
 
 class CoreSection(Section):
-    """A table of a file that describes an object of the package; errors of that are errors of the table."""
+    """A table of a file that describes an object of the package.
+
+    The object is made when the table is validated, so that an error raised by it is a mistake of the table.
+    """
 
     @cached_property
     def core(self) -> Any:
@@ -243,7 +246,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
 
 
 def _place_in(field: str, key: str) -> str:
-    """Return the path `key` of an input, extended by what `field` has in addition, such as ".values[1]"."""
+    """Return the path `key` of an input, extended by the further part of `field`, such as ".values[1]"."""
     parts = (field.removeprefix(name) for name in wholes_of(field) if f".{key}".endswith(f".{name}"))
     if (part := next(parts, None)) is not None:
         return key + part
@@ -338,7 +341,7 @@ class MadeSection(CoreSection):
 
     @property
     def given(self) -> dict[str, Any]:
-        """Return the values of the table as arguments for the class of the package."""
+        """Return the values of the table as arguments, by name, for the class that it describes."""
         given: dict[str, Any] = {}
         for name, key in self.key_of.items():
             value, (argument, pair, _) = getattr(self, key), name.partition("[")

@@ -116,7 +116,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 @contextmanager
 def _terminated_as_interrupted() -> Iterator[None]:
     """In this context, let SIGTERM (a request to terminate, as from a scheduler) act like Ctrl-C."""
-    if threading.current_thread() is not threading.main_thread():  # Python allows signal handlers only there
+    # Python lets only the main thread set signal handlers.
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
 

@@ -65,7 +65,11 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
 
 
 def _similar(name: str, known: Iterable[str]) -> list[str]:
-    """Find the most similar known name, if any; other digits are another quantity, if not just swapped."""
+    """Return a list with the known name that is most similar to a given name; empty if none is similar.
+
+    A known name that differs only in the digits at its end, such as EI1 from EI2, is another quantity and is
+    returned only if the last two digits are swapped.
+    """
     letters, swapped = name.rstrip("0123456789"), re.sub(r"(\d)(\d)$", r"\2\1", name)
     others = [
         each for each in known if each == swapped or not letters or each.rstrip("0123456789") != letters

@@ -165,7 +165,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     """
     matches = [i for i in inputs if key in (i.path, i.name)]
     if all(i.required or i.default is None for i in matches):
-        # A required input takes precedence over inputs that default to it, as those of a brake's second shoe.
+        # A required input takes precedence over inputs that default to it, such as those of a second shoe.
         matches = [i for i in matches if i.required] or matches
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
@@ -173,7 +173,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     if not matches:
         raise ValueError(f"{words}: {unknown(key, [i.path for i in numbers], [i.name for i in numbers])}")
     if choices := matches[0].choices:
-        says = f"it is a choice ({', '.join(map(str, choices))}): give each a file; numbers are"
+        says = f"it is a choice ({', '.join(map(str, choices))}), no number: give each a file; numbers are"
         raise ValueError(f"{words}: {matches[0].path}: {says} {', '.join(i.path for i in numbers)}")
     return matches[0]
 

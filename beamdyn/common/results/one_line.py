@@ -156,7 +156,8 @@ def error_at_most(error: Any, unit: str = "") -> str:
     return f"error <= {rounded_up(largest)}{unit and ' ' + unit}"
 
 
-_ROUNDED = 1 - 1e-12  # so that a rounding error does not turn 5e-8 into 6e-8
+# Factor on a number before it is rounded up, so that its rounding error does not turn 5e-8 into 6e-8.
+_ROUNDED = 1 - 1e-12
 
 
 def rounded_up(value: float) -> str:

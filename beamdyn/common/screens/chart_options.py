@@ -20,7 +20,8 @@ _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")
 # Colours used by charts but not by drawings, for a light background; the page sets those for dark.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
 _MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f5d76e", "chart-6": "#a98bff"}
-# How the chart component rounds the tick step: leading digits below the second number become the first.
+# Pairs (a, b) by which the chart component rounds tick steps: a step of s times a power of ten, 1 <= s < 10,
+# becomes a times this power, for the first pair with s < b.
 _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
 _FEW = 8  # largest number of decades of an axis for which minor ticks are drawn
