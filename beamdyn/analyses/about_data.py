@@ -55,8 +55,8 @@ AtSpeeds = Annotated[
 ColumnsOfFile = Annotated[
     tuple[str, ...],
     Parameter(
-        help='Columns of the file, by quantity, separated by semicolons: "tip = TipDxb1; root moment = '
-        'RootMyb1", with a unit where the file has none: "tip by tip force [mm/N] = UY_2".',
+        help='Column of the file for each quantity, separated by semicolons: "tip = TipDxb1; root moment = '
+        'RootMyb1", with a unit if the file states none: "tip by tip force [mm/N] = UY_2".',
         negative="",
         consume_multiple=False,
         show_default=False,
@@ -65,7 +65,7 @@ ColumnsOfFile = Annotated[
 Uncertainty = Annotated[
     str | None,
     Parameter(
-        help='Standard uncertainty where the data have none, e.g. "0.5 Hz" or "1 %".',
+        help='Standard uncertainty of the values, if the data contain none, e.g. "0.5 Hz" or "1 %".',
         allow_leading_hyphen=True,
     ),
 ]

@@ -93,7 +93,7 @@ class RandomInput:
             unit = "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz"
             return read_spectrum(self.psd, unit, self.psd_axes or "log")
         if self.psd_axes is not None:
-            raise ValueError(f"--psd-axes = {self.psd_axes}: give it with --psd; a road has its own")
+            raise ValueError(f"--psd-axes = {self.psd_axes}: give it with --psd; for a road, leave it out")
         limit = {} if self.highest is None else {"highest": parse_positive("--highest", self.highest, "1/m")}
         return bd.RoadRoughness(
             self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit
@@ -197,7 +197,7 @@ Output = Annotated[
     AsText(lambda _, text, __: parse_output(text), default="tip"),
     Parameter(
         help="tip, tip across, tip acceleration, root moment, root strain; deflection@20 mm, "
-        "acceleration@20 mm; of a harvester voltage, current, layer strain."
+        "acceleration@20 mm; for a harvester also voltage, current, layer strain."
     ),
 ]
 
@@ -260,7 +260,7 @@ def response(
     'beamdyn random examples/rough_road.toml --road C --velocity "90 km/h"',
     screen="Random road",
     opens_with=("--road", "A", "--velocity", "90 km/h", "--damping-ratio", "0.03"),
-    about_scene="The scene, with a rolling wheel for a road.",
+    about_scene="The scene; for --road, with a rolling wheel.",
 )
 def random(
     scene: bd.Scene,

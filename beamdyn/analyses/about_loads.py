@@ -201,7 +201,7 @@ def loads(
 
 @analysis(
     'beamdyn random-loads examples/rough_road.toml --road C --at "0, 10 mm"',
-    about_scene="The scene, damped; with a rolling wheel for a road.",
+    about_scene="The scene, with damping; for --road, with a rolling wheel.",
 )
 def random_loads(
     scene: bd.Scene,
@@ -242,7 +242,7 @@ def _check_together(kinds: list[str], angle: float | None, window: str | None) -
     if window is not None and "--t-end" not in kinds:
         raise ValueError("--window belongs to a transient: give --t-end, too")
     if angle is not None and kinds and kinds != ["--speed"]:
-        raise ValueError("--angle belongs to the equilibrium at a --speed: elsewhere the beam rotates")
+        raise ValueError("--angle belongs to the equilibrium at a --speed; otherwise leave it out")
 
 
 def _in_transient(

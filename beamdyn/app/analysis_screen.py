@@ -110,7 +110,10 @@ def first_entries(analysis: Analysis) -> dict[str, str]:
 
 
 def _section(analysis: Analysis) -> type[Section]:
-    """Make the class of the form fields for an analysis' options, also grouped ones; no fields for files."""
+    """Make the class whose fields are the form fields of an analysis: one for each option, except for files.
+
+    Options in groups have fields of their own.
+    """
     fields: dict[str, Any] = {}
     for name, option in analysis.shown.items():
         if group := _group_of(option.annotation):

@@ -163,7 +163,10 @@ def _plan(paths: set[str]) -> Drawing:
 
 
 def _section(paths: set[str]) -> Drawing:
-    """Draw the cross-section at the root, seen from the tip."""
+    """Draw the cross-section at the root, seen from the tip.
+
+    Its symbols depend on the paths of the inputs in the form: h and b if "beam.thickness" is one, else c.
+    """
     s = Sketch()
     e, f = np.array([np.cos(_PSI), np.sin(_PSI)]), np.array([-np.sin(_PSI), np.cos(_PSI)])
     h, b = 0.34, 0.9

@@ -15,7 +15,8 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 
-_STEPS = 200  # least number of steps per beam length, for rounding dragged lengths
+# Dragged lengths are rounded to steps of a power of ten; at least so many steps make the length of the beam.
+_STEPS = 200
 
 
 def solve(tables: Mapping[str, Any]) -> RotorDrawing:

@@ -115,8 +115,8 @@ def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> Rendera
     sizes: dict[str, float] = {}
     for name, change in effects.changes.items():
         known = np.asarray(change)[np.isfinite(change)]
-        if known.size:  # the relative change with the largest magnitude
-            sizes[name] = float(known[np.abs(known).argmax()])
+        if known.size:
+            sizes[name] = float(known[np.abs(known).argmax()])  # the change of largest magnitude
     rows = []
     for name in sorted(sizes, key=lambda name: -abs(sizes[name])):
         how = joined("; ", filter(None, (effects.reasons.get(name, ""), effects.assumed.get(name, ""))))

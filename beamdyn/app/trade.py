@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 # Total computing time of a diagram's measurements [s], for a full and for a preliminary result.
 _BUDGET, _SOON = 2.0, 0.05
 _RUNS = 5  # number of timed runs of the chosen model; the shortest time counts
-# Placeholder for a diagram that a preliminary result lacks.
+# Text in place of a diagram or number that a preliminary result lacks: it follows with the full result.
 _FOLLOWS = "follows"
 _LATER = Diagram.make(_FOLLOWS, "", "", 0.0, ())
 _KEPT = 8  # largest number of scenes whose measurements are stored

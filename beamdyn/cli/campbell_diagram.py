@@ -111,7 +111,7 @@ def campbell(
 
 
 class _BladeFile(NamedTuple):
-    """A file with its scene, the scene as text, and data of a blade file that a scene cannot hold."""
+    """A scene or blade file: path, scene, scene as text, warnings on data that a scene cannot hold."""
 
     path: Path
     scene: Scene

@@ -56,7 +56,7 @@ class Part(Words):
         return str(self)
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the part as the function `word` of a medium words it."""
+        """Return the wording of the part that the function `word` of a medium gives."""
         return word(self)
 
 

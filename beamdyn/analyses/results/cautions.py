@@ -58,7 +58,11 @@ def describe_left_out(result: Result) -> list[str]:
 
 
 def notes_of(result: Any) -> list[str]:
-    """Return notes for a picture or CSV file: "with large deflection", or else on the model's limits."""
+    """Return the notes on a result in pictures and CSV files.
+
+    The note is "with large deflection" if the scene models it; else the notes state that the result is
+    outside linear theory, or that its model error is large.
+    """
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]

@@ -117,7 +117,10 @@ def _say_frequency(frequency: float, error: float) -> str:
 
 
 def _kinds(result: bd.Modes) -> Iterator[Column]:
-    """Yield columns of energy fractions in two planes, of which tables show one, and of kinds of modes."""
+    """Yield columns of each mode's energy fractions in two planes of bending, and of the kind of each mode.
+
+    Tables show only one of the two fractions.
+    """
     drawn, words = first_drawn(result.scene), words_of_directions(result.scene)
     for k, direction in enumerate(csv_directions(result.scene)):
         shown = f"share of {words[k]}" if k == drawn else None
@@ -220,7 +223,7 @@ def locus_csv(result: bd.Locus) -> Columns:
 
 
 def critical_answer(result: bd.CriticalPoint) -> Group:
-    """Say the critical speed, or up to which speed there is none, and name neglected effects."""
+    """Make sentences on the critical speed, or how far there is certainly none, and on neglected effects."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
         said = Text(f"no critical speed: {in_files(result.reason)}")

@@ -129,7 +129,10 @@ def _deflections(
 
 
 def _by_direction(result: bd.SteadyResponse | bd.Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-    """Return largest deflections in each direction by name in files; empty if only one is modelled."""
+    """Return the largest deflections in each direction by the names of columns, such as "largest_bending".
+
+    The dictionary is empty if only one direction is modelled.
+    """
     return {
         f"largest_{name}": size
         for name, size in zip(of_modes.csv_directions(result.scene), sizes, strict=False)

@@ -77,7 +77,7 @@ def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]
 
 
 def _words(varied: VariedInput) -> str:
-    """Return the name of an input as in files and commands; within a form, as in the form."""
+    """Return the name of an input: its path as in files and commands, or its field's name in a form."""
     return in_files(InputName(varied.name))
 
 

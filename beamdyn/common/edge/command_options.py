@@ -252,7 +252,7 @@ class VaryOptions:
 
     @property
     def combine(self) -> Literal["product", "zip"]:
-        """Return "product" if inputs are combined each with each, "zip" if taken together."""
+        """Return "product" for all combinations of the inputs' values, "zip" if n-th values go together."""
         return "zip" if self.together else "product"
 
     @property

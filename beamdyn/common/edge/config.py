@@ -90,7 +90,7 @@ class MissingValue(InvalidValue):
     """Raised for a missing value that is required; the message names the field and what to give."""
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the message; the function `word` words each of its parts for Python, files or forms."""
+        """Return the message; the function `word` formats each of its parts for Python, files or forms."""
         return f"{self.field}: missing; {worded(self.bound, word)}"
 
 
@@ -446,7 +446,7 @@ def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _key(name: str, hint: Any) -> str:
-    """Return the key of an argument: the described one, else its name ("tip_x", "tip_y" for a pair)."""
+    """Return the key of an argument in files: as in its `Described`, else its name ("tip_x" for "tip[0]")."""
     described = description(hint)
     return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 

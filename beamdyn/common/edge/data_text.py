@@ -51,7 +51,7 @@ class DataText:
         return ConfigError(str(self.path), [f"line {line}: {sentence}"])
 
     def lacking(self, sentence: str) -> ConfigError:
-        """Return an error that the file ends without some required content."""
+        """Return an error that the file ends too early; `sentence` names the content that it lacks."""
         return self.refusal(len(self.lines), f"the file ends here, {sentence}")
 
     def is_comment(self, line: int) -> bool:
