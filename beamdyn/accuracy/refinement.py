@@ -58,7 +58,7 @@ ROUNDING_OF_TWO = ErrorMargin(
 BASES_OF_PLATES = ErrorMargin(
     1.5,
     "frequencies of a strip as a plate in two bases of up to 12 functions along and across",
-    "stresses in the corners of the clamp make convergence algebraic: errors are up to 1.6 differences",
+    "corner stresses at the clamp make convergence algebraic: errors are up to 1.6 times the difference",
     "stated_plate_errors",
 )
 LINEAR_MESHES = ErrorMargin(

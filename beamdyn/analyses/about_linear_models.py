@@ -55,8 +55,9 @@ class RandomInput:
     velocity : str, optional
         Velocity of the rolling wheel in place of its speed, e.g. "90 km/h".
     input : str, optional
-        bending, across, n1, n2, n3: acceleration of the base; force@20 mm, force@tip, with " across" at the
-        end for that direction; default: bending, for a road n2.
+        Acceleration of the base in a direction: bending, across, n1, n2 or n3; or a force at a position:
+        force@20 mm or force@tip, with " across" at the end if it acts across. Default: bending, or n2 for a
+        road.
     """
 
     psd: Path | None = None
@@ -246,8 +247,8 @@ def response(
         Frequencies with their unit: start:stop:count at equal ratios, e.g. "1:1000:400 Hz", or a
         list, e.g. "50, 60 Hz".
     input
-        bending, across, n1, n2, n3: acceleration of the base; force@20 mm, force@tip, with "
-        across" at the end for that direction.
+        Acceleration of the base in a direction: bending, across, n1, n2 or n3; or a force at a
+        position: force@20 mm or force@tip, with " across" at the end if it acts across.
     modes
         Number of modes; auto: the fewest that keep the error below 1e-9 of the largest response.
     """

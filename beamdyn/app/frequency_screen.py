@@ -213,7 +213,7 @@ def headline(answer: Frequencies) -> Iterator[KeyResult]:
     for words, frequency in (("first frequency at rest", first[0]), (f"at {brief(top, unit)}", first[-1])):
         yield KeyResult(words, number(frequency, "Hz") if np.isfinite(frequency) else "diverges")
     for margin in answer.margins[:1]:
-        yield KeyResult(f"at the motion's {brief(margin.speed, unit)}", number(margin.frequency, "Hz"))
+        yield KeyResult(f"at the motion's speed, {brief(margin.speed, unit)}", number(margin.frequency, "Hz"))
     if critical is None:
         return
     if np.isfinite(critical.speed):

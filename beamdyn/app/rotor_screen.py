@@ -20,7 +20,7 @@ _STEPS = 200
 
 
 def solve(tables: Mapping[str, Any]) -> RotorDrawing:
-    """Make the drawing of the rotor, if the scene can be computed."""
+    """Make the drawing of the rotor; raise an error if the scene cannot be computed."""
     scene = read_scene(tables)
     first_frequency(scene)  # raises an error if the scene cannot be computed
     return draw_rotor(scene)

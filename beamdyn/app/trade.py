@@ -212,7 +212,7 @@ def rows(answer: Trade) -> Iterator[Sequence[object]]:
 
 
 def draw(answer: Trade, _: float = 0.0) -> Figure:
-    """Draw both diagrams side by side."""
+    """Draw the diagrams of numerical error and of total error over computing time, side by side."""
     known = [d for d in (answer.numerical, answer.of_physics) if d.measurements]
     figure = new_figure(6.5 * len(known), 5.0)
     for diagram, ax in zip(known, np.atleast_1d(figure.subplots(1, len(known))), strict=True):

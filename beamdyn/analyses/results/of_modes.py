@@ -82,7 +82,7 @@ def csv_directions(scene: bd.Scene) -> tuple[str, ...]:
 
 def modes_columns(result: bd.Modes) -> Columns:
     """Make columns of the modes: frequency, errors, growth rate, status, and how each deforms the beam."""
-    # Absolute errors in the unit of the eigenvalue [rad/s].
+    # `size` is the absolute error of each eigenvalue [rad/s], and so of the growth rate [1/s].
     size, rate = np.abs(result.eigenvalue) * result.error, result.growth_rate
     count, effects = len(size), result.left_out_effects
     model_errors = [_say_model_error(float(each), effects.lack_data) for each in effects.total]
@@ -273,7 +273,7 @@ def bounds_columns(result: bd.FrequencyBounds) -> Columns:
         Column("lower", result.lower, "Hz", form=lower_bound, words="at least"),
         Column("upper", result.upper, "Hz", form=upper_bound, words="at most"),
         Column("relative_width", result.width, form=".0e"),
-        title=f"Guaranteed bounds at {result.display_units.speed_unit().say(result.speed, 10)}, of the model",
+        title=f"Guaranteed bounds of the model at {result.display_units.speed_unit().say(result.speed, 10)}",
         note=f"{result.how[:1].upper()}{result.how[1:]}.",
     )
 

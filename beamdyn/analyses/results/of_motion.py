@@ -22,7 +22,7 @@ from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions, words_of_directions
 from beamdyn.scene.motion import RollingWheel
 
-_DIGITS = 6  # largest number of digits of a deflection, which has a modal truncation error
+_DIGITS = 6  # largest number of digits of a deflection: modal truncation errors exceed further digits
 # Relative error that is assumed for a deflection whose error is not estimated.
 _ASSUMED_ERROR = 5e-4
 _WHERE_COMPUTED = "model_error_where_computed"

@@ -303,7 +303,7 @@ def _bounds(result: bd.Campbell) -> Iterator[Columns]:
             Column("at least", (), "Hz", cells=np.where(known, [*map(lower_bound, low)], "-").tolist()),
             Column("at most", high, "Hz", form=upper_bound),
             Column("relative width", (), cells=np.where(known, np.char.mod("%.0e", width), "-").tolist()),
-            title=f"Guaranteed bounds at {result.display_units.speed_unit().say(each[0][1])}, of the model",
+            title=f"Guaranteed bounds of the model at {result.display_units.speed_unit().say(each[0][1])}",
         )
 
 

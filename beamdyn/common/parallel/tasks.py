@@ -109,7 +109,7 @@ Solve = Callable[[Any], Any]
 Keep = Callable[[Any, Any], None]
 # Most tasks submitted to an executor at once: enough to keep its workers busy without filling the memory.
 _IN_FLIGHT = 256
-# Most tasks submitted at once for each worker process; tasks that have not begun can be withdrawn.
+# Most tasks submitted at once for each worker process; this process takes back some that have not begun.
 _PER_WORKER = 8
 
 
