@@ -86,7 +86,10 @@ def analysis_screen(analysis: Analysis) -> Screen:
 
 
 def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
-    """Draw the picture of a result, without notes below it, which the page shows separately."""
+    """Draw the picture of a result, for a narrow page if `narrow`.
+
+    Notes are not written below the picture, as the page shows them separately.
+    """
     result: Any = answer.result
     if narrow:
         own = hasattr(result, "picture_size")  # a picture with several panels chooses its own size

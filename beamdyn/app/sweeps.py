@@ -144,7 +144,11 @@ _MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.mo
 
 
 def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str) -> Sweeps:
-    """Make the sweeps that a screen offers; their results depend on the number of modes in the form."""
+    """Make the sweeps that a screen offers.
+
+    ``outputs(modes)`` lists the results for the number of modes in the form; `example` is the initial text
+    for the varied input, `results` that for the names of the results.
+    """
 
     def names(tables: Mapping[str, Any]) -> Sequence[str]:
         return [output.name for output in outputs(read(tables)[2])]

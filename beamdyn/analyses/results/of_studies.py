@@ -308,7 +308,10 @@ def _bounds(result: bd.Campbell) -> Iterator[Columns]:
 
 
 def _name_below(result: bd.Campbell, label: str, speed: float, high: float) -> str:
-    """Return the name of the mode whose frequency at a speed is close to an upper bound; "-" if none is."""
+    """Return the name of the mode whose frequency at a speed is close to the upper bound `high` [Hz].
+
+    The mode is one of the scene with the name `label`; the result is "-" if none is close.
+    """
     i = result.labels.index(label)
     locus = result.loci[i]
     distance = np.abs(locus.frequency[np.abs(locus.speeds - speed).argmin()] / high - 1)

@@ -223,7 +223,11 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
-    """Select one label's free candidates, the cheapest first, from the candidates of all labels."""
+    """Select one label's free candidates, the cheapest first, from the candidates of all labels.
+
+    The slice `part` selects the label's anchors; `free` (anchors of all labels, candidates) says which are
+    free.
+    """
     which = np.flatnonzero(free[part])
     cost = every.costs[part].ravel()[which]
     order = np.argsort(cost, kind="stable")

@@ -184,7 +184,11 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """Make a layout from the places of a drawing's labels; its scale may shrink unless `held` is given."""
+    """Make a layout from the places of a drawing's labels.
+
+    The drawing is made smaller than `fit` if that is needed to list labels without a place below it; the
+    transformation `held`, if given, is kept.
+    """
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -268,8 +272,9 @@ def _with_list(
 def _make_room(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[list[int], float, Fit, Sequence[Place | None]]:
-    """Shrink the drawing, unless `held` is given, until a list of labels without a place fits below it.
+    """Shrink the drawing until a list of labels without a place fits below it.
 
+    A given transformation `held` is kept: the drawing then does not shrink.
     In the smaller drawing more labels may lack a free place: the steps are repeated until all such labels
     are listed.  Returns the indices of these labels, the top of the list [pt], the scale, and all places.
     """

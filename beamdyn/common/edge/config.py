@@ -235,7 +235,11 @@ def _missing_table(path: str, known: Sequence[Input]) -> str:
 
 
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
-    """Return the sentence on an invalid value, with key and value of the file, and the path of the input."""
+    """Return the sentence on an invalid value, with key and value of the file, and the path of the input.
+
+    `place` and `path` are the path of the value with and without list indices, `reason` is the error that the
+    check raised, and `given` the value in the file.
+    """
     if isinstance(reason, InvalidInput) and not reason.field:
         return say(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
