@@ -61,7 +61,10 @@ class CycleOptions:
     cycles_file: Annotated[Path | None, WRITTEN] = None
 
     def check(self, in_transient: bool) -> None:
-        """Raise an error for options that would have no effect."""
+        """Raise an error for options that would have no effect, or whose values are not valid.
+
+        None of the options has an effect on other analyses than a transient.
+        """
         if self.cycles is not None and not in_transient:
             raise ValueError("--cycles belongs to a transient: give --t-end, too")
         text = "" if self.woehler is None else f'"{self.woehler}"'

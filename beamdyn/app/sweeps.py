@@ -127,7 +127,7 @@ def frequency_outputs(modes: int) -> list[Output]:
 
 
 def _frequency(mode: int, share: float, case: SweepCase) -> float:
-    """Compute a natural frequency [Hz] at a fraction of the top speed; nan if the mode diverges."""
+    """Compute a natural frequency [Hz] at the fraction `share` of the top speed; nan if the mode diverges."""
     return float(case.ask(natural_modes, share * case.top, case.modes).frequency[mode])
 
 

@@ -225,7 +225,10 @@ def told_from(value: float, limit: float) -> str:
 
 
 def percent(value: float, sign: str = "") -> str:
-    """Format a fraction in percent with two digits, never with a positive exponent."""
+    """Format a fraction in percent with two digits, never with a positive exponent.
+
+    With the `sign` "+", positive numbers have a plus sign.
+    """
     digits = f"{100 * value:{sign}.2g}"
     return f"{100 * value:{sign}.0f} %" if "e+" in digits else f"{digits} %"
 

@@ -67,7 +67,7 @@ def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
 
 
 def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
-    """Return the note on how many of all speeds a table shows; empty if it shows all."""
+    """Return the note on how many of `every` speed a table shows (`shown`); empty if it shows all."""
     few = len(shown) < len(every)
     return f" ({len(shown)} of {len(every)} speeds; CSV and JSON have all)" if few else ""
 

@@ -65,7 +65,8 @@ def time_of_peak(
 ) -> tuple[float, float]:
     """Return the time [s] of the largest tip deflection in a window, and its error [s], a sampling step.
 
-    If the window contains fewer than two samples, return its centre and half its length.
+    The deflection is that in one `direction` (0: bending, 1: across), or the magnitude of both if None.  If
+    the window contains fewer than two samples, return its centre and half its length.
     """
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     if len(inside) < 2:
@@ -76,7 +77,10 @@ def time_of_peak(
 
 
 def _peak_cells(run: bd.Transient, start: float, end: float, direction: int | None) -> tuple[Text, Text, str]:
-    """Make cells of the largest tip deflection in a window: deflection, ratio to the length, and time [s]."""
+    """Make cells of the largest tip deflection in a window: deflection, ratio to the length, and time [s].
+
+    The deflection is that in one `direction` (0: bending, 1: across), or the magnitude of both if None.
+    """
     size, per_si = run.peak(start, end, direction), run.display_units.length_unit().per_si
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error * run.largest if math.isfinite(run.mode_error) else 0.0
@@ -129,7 +133,7 @@ def _deflections(
 
 
 def _by_direction(result: bd.SteadyResponse | bd.Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the largest deflections in each direction by the names of columns, such as "largest_bending".
+    """Return the largest deflections `sizes` of each direction by their column names: "largest_bending".
 
     The dictionary is empty if only one direction is modelled.
     """

@@ -151,7 +151,7 @@ def _as_sentences(name: str) -> Iterator[None]:
 
 
 def _complain(name: str, sentence: str, code: int) -> int:
-    """Print an error message on standard error, if possible, and return the exit code."""
+    """Print an error message of the program `name` on standard error, if possible; return the exit code."""
     if sys.stderr is not None:
         with suppress(OSError), quiet():
             print(f"{name}: {sentence}", file=sys.stderr, flush=True)

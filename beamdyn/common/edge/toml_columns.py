@@ -78,7 +78,10 @@ def _similar(name: str, known: Iterable[str]) -> list[str]:
 
 
 def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[str, str]:
-    """Read the name and the unit of a column from its heading."""
+    """Read the name of the quantity and the unit of a column from its heading.
+
+    Raise `InvalidInput` with the position `place` if the quantity is not `known`, or its unit is wrong.
+    """
     match = _HEAD.fullmatch(head) if isinstance(head, str) else None
     name = match[1] if match else ""
     if match is None or name not in known:

@@ -137,7 +137,10 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
-    """Convert a value to SI units, and check it against the bounds of the input."""
+    """Convert a value to SI units, and check it against the bounds of the input `entry`.
+
+    An error message begins with `words`, the option as it was given.
+    """
     quantity = entry.quantity
     given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
     try:
@@ -179,7 +182,10 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """Describe an unknown name, and suggest the most similar of all names; if none is, list `names`."""
+    """Describe the unknown name `key`, and suggest the most similar of `names` and `more`.
+
+    If none is similar, list `names`.
+    """
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"

@@ -140,7 +140,7 @@ def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
 
 
 def counted(count: int, word: str, many: str = "") -> str:
-    """Format a count with its noun: "1 mode", "3 modes"."""
+    """Format a count with its noun: "1 mode", "3 modes"; `many` is the plural if it does not just add s."""
     return f"{count} {word if count == 1 else many or word + 's'}"
 
 

@@ -133,7 +133,11 @@ def _letters(size: int) -> dict[str, Any]:
 
 
 def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, Any]:
-    """Make the options of an axis; a logarithmic axis has labels at powers of ten unless they overlap."""
+    """Make the options of an axis; the y axis is `upright`.
+
+    A logarithmic axis, whose limits follow from the `values` on it if none are given, has labels at powers of
+    ten unless they overlap.
+    """
     line = {"lineStyle": {"color": _paint("axis")}}
     label: dict[str, Any] = _letters(_PALE) | {"hideOverlap": True}
     tick: dict[str, Any] = {"show": True} | line
