@@ -39,10 +39,8 @@ def response_table(result: bd.FrequencyResponse) -> Group:
     more = f"; the largest {_MOST_PEAKS} of {len(peaks)} are shown" if len(peaks) > _MOST_PEAKS else ""
     note = f"Peaks in {at}, located also between the {len(f)} given frequencies{more}."
     if any(row[-1] == _NO_WIDTH for row in rows):
-        note += (
-            f" {_NO_WIDTH}: no bandwidth, as on one side or both the response rises again before it falls to "
-            "half the power."
-        )
+        said = "no width, as on one side or both the response rises again before it falls to half the power"
+        note += f" {_NO_WIDTH}: {said}."
     i, j = np.unravel_index(int(size.argmax()), size.shape)
     value = supported(float(size[i, j]), float(result.error[i, j]), _DIGITS)
     where = f"{f[i]:.6g} Hz, phase {np.degrees(np.angle(result.response[i, j])):.1f} deg"
@@ -70,10 +68,7 @@ def random_table(result: bd.RandomResponse) -> Group:
     rows = [
         ("root mean square", f"{supported(result.rms, result.rms_error, _DIGITS)}{unit}"),
         ("its estimated error", f"{result.rms_error:.1g}{unit}"),
-        (
-            "three times the root mean square",
-            f"{supported(3 * result.rms, 3 * result.rms_error, _DIGITS)}{unit}",
-        ),
+        ("three times the rms", f"{supported(3 * result.rms, 3 * result.rms_error, _DIGITS)}{unit}"),
         ("root mean square of the input", f"{result.input_rms:.6g} {result.input.rpartition('[')[2][:-1]}"),
         ("largest density at", f"{result.frequencies[int(result.psd.argmax())]:.6g} Hz"),
         ("variation of stiffness, neglected", f"{parametric.stiffness_variation:.2g} (rms), relative"),
