@@ -1,7 +1,7 @@
 """Numerical tools: assignment problem, Gauss quadrature, Legendre series, ellipses, triangular systems.
 
 Triangular systems are not solved by `scipy.linalg.solve_triangular`: its LAPACK routine starts threads even
-for small matrices, and on a busy machine these wait for milliseconds although the arithmetic takes
+for small matrices, and on a busy machine the threads wait for milliseconds although the arithmetic takes
 microseconds.
 """
 

@@ -76,7 +76,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     app : App
         The program.
     arguments : sequence of str, optional
-        As on the command line, without the program's name; those of the process if not given.
+        Words as on the command line, without the program's name; by default those in `sys.argv`.
 
     Returns
     -------

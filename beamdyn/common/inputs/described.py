@@ -283,7 +283,7 @@ class Designs:
     inputs : sequence of VariedInput
         The inputs.
     combine : {"product", "zip"}
-        Whether each value is combined with each of the other inputs, or the first values of all inputs make
+        Whether each value is combined with all values of other inputs, or the first values of all inputs make
         a design, the second values another, and so on.
     """
 

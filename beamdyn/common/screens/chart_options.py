@@ -17,7 +17,7 @@ _MOST_DIGITS = 10  # most digits of the values of a curve that varies little
 _WIDE = 0.15  # fraction of the axis below which a band is too narrow for its text
 # Colours of curves, used in turn.
 _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")
-# Colours used by charts but not by drawings, for a light background; the page sets those for dark.
+# Colours used by charts but not by drawings: on a light background, and on a dark one.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
 _MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f5d76e", "chart-6": "#a98bff"}
 # Pairs (a, b) by which the chart component rounds tick steps: a step of s times a power of ten, 1 <= s < 10,
@@ -57,7 +57,10 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.nda
 
 
 def chart_colours(selector: str, dark: bool = False) -> str:
-    """Return CSS rules for the colours of charts that do not occur in drawings."""
+    """Return CSS rules that set those colours of charts that drawings do not use.
+
+    The rules are for the elements of a CSS `selector`, on a light or a `dark` background.
+    """
     values = _MORE_DARK if dark else _MORE
     return f"{selector}{{{''.join(f'--{role}:{colour};' for role, colour in values.items())}}}"
 
