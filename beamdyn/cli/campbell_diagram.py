@@ -153,7 +153,7 @@ def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -
     stems = [given.path.stem for given in inputs]
     names = stems if labels is None else [part.strip() for part in labels.split(",")]
     if len(names) != len(inputs) or not all(names):
-        raise ValueError(f'--labels = "{labels}": give one label for each of {len(inputs)} scenes')
+        raise ValueError(f'--labels = "{labels}": give one label per scene, {len(inputs)} in all')
     twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
     if twice:
         remedy = "give --labels, one for each" if labels is None else "give each its own"

@@ -318,7 +318,7 @@ class Designs:
             If the number of indices differs from the number of axes, or an index is out of range.
         """
         if len(place) != len(self.shape):
-            raise ValueError(f"place {place}: give {len(self.shape)} indices, one per axis of {self.shape}")
+            raise ValueError(f"place {place}: give one index per axis of the shape {self.shape}")
         if any(not -length <= i < length for i, length in zip(place, self.shape, strict=True)):
             raise ValueError(f"place {place}: it is outside the shape {self.shape}; indices begin at 0")
         places = place * len(self.inputs) if self.combine == "zip" else place
