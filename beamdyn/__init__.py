@@ -27,7 +27,8 @@ SHOWN_BY.update(
     for room in rooms
 )
 
-# The public names; `__getattr__` loads each from its module here.
+# Imports of the public names, for type checkers only.  At run time `__getattr__` loads each name, when it is
+# first used, from the module that stands here.
 if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
@@ -157,8 +158,8 @@ if TYPE_CHECKING:
 
 @cache
 def _modules() -> dict[str, str]:
-    """Return the modules of the public names, from the imports for type checkers in this file."""
-    import ast  # imported here, as it takes a fifth of the time of importing this package
+    """Return the module of each public name, read from the block ``if TYPE_CHECKING`` of this file."""
+    import ast  # imported here, where it is needed: it would lengthen the import of this package by a fifth
 
     with open(__file__, encoding="utf-8") as file:
         tree = ast.parse(file.read())

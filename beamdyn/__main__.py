@@ -1,4 +1,4 @@
-"""``python -m beamdyn``."""
+"""Run the command line of beamdyn by ``python -m beamdyn``."""
 
 import sys
 

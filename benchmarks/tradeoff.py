@@ -382,7 +382,7 @@ def write_section(diagram: Diagram) -> str:
     skipped = "".join(f"- {sentence}\n" for sentence in diagram.skipped)
     return (
         f"### {diagram.title[:1].upper()}{diagram.title[1:]}\n\nError of {diagram.error_of}.\n"
-        f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that.\n\n"
+        f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} are not resolved.\n\n"
         f"{markdown_table(('method', 'setting', 'time', 'error', 'in the front'), rows)}\n"
         f"The cost of each digit (over the digit before): {costs or 'not a digit is right'}.\n"
         + (f"\nNot measured:\n{skipped}" if skipped else "")

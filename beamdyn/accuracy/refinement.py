@@ -16,14 +16,15 @@ import numpy as np
 class ErrorMargin(NamedTuple):
     """Safety factor by which the difference of two results is multiplied to state an error.
 
-    `EFFECTS` is the factor on a tolerance that limits the size of neglected effects.
+    The margin `EFFECTS` is used in another way: effects are added to the model until the estimated sizes of
+    the neglected ones add up to at most this factor times the tolerance.
 
     Parameters
     ----------
     factor : float
         Ratio of the stated error to the difference.
     distance : str
-        Results whose difference is meant, in words.
+        Description of the two results that are compared.
     reason : str
         Reason for the size of the factor.
     evidence : str
@@ -39,7 +40,7 @@ class ErrorMargin(NamedTuple):
 SLOW_BASES = ErrorMargin(
     3.0,
     "frequencies of two Ritz bases, where convergence is slow",
-    "all functions left out may together change a mode more than the last ones added did",
+    "all functions left out may together change a mode more than the functions added last did",
     "stated_frequency_errors",
 )
 BASES_OF_FIELDS = ErrorMargin(
@@ -50,14 +51,14 @@ BASES_OF_FIELDS = ErrorMargin(
 )
 ROUNDING_OF_TWO = ErrorMargin(
     1.5,
-    "rounding errors of one of two models that are compared",
-    "models with equal matrices have equal errors, which a comparison does not show",
+    "rounding errors in the frequencies of two models that are compared",
+    "rounding errors that both models share, as with equal matrices, do not show in their difference",
     "stated_frequency_errors",
 )
 BASES_OF_PLATES = ErrorMargin(
     1.5,
     "frequencies of a strip as a plate in two bases of up to 12 functions along and across",
-    "stresses in the corners of the clamp make convergence algebraic: functions left out may change a "
+    "corner stresses at the clamp make convergence algebraic: functions left out may change a "
     "frequency more than the last ones added did",
     "stated_plate_errors",
 )
@@ -82,13 +83,14 @@ BASES_OF_STATIC_LOADS = ErrorMargin(
 MODES_OF_MOMENTS = ErrorMargin(
     3.0,
     "moments and strains with n modes and with 1.5 n modes",
-    "after a sudden load, mode k contributes as k^-3: modes above n are up to 2.2 times those to 1.5 n",
+    "after a sudden load, mode k contributes as k^-3: all modes above n contribute up to 2.2 times as much "
+    "as modes n + 1 to 1.5 n",
     "stated_load_errors",
 )
 MODES_OF_FORCES = ErrorMargin(
     4.0,
     "shear forces with n modes and with 1.5 n modes",
-    "mode k contributes as k^-2: modes above n are up to 3 times those to 1.5 n",
+    "mode k contributes as k^-2: all modes above n contribute up to 3 times as much as modes n + 1 to 1.5 n",
     "stated_load_errors",
 )
 STEPS = ErrorMargin(

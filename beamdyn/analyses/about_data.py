@@ -30,10 +30,10 @@ Data = Annotated[
     READ_SECOND,
     Parameter(
         name="DATA.csv",
-        help='Measured values, by the headings of their columns: "speed [rpm], frequency 1 [Hz]", '
+        help='File of measured values. Its columns may have the headings "speed [rpm], frequency 1 [Hz]", '
         '"time [s], tip [mm]", "speed [rpm], from [s], to [s], largest tip [mm]", '
         '"position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]" or '
-        '"position [mm], shape at 62.1 Hz"; lists of ANSYS, output of FAST, universal files.',
+        '"position [mm], shape at 62.1 Hz"; or it is a list of ANSYS, output of FAST, or a universal file.',
     ),
 ]
 Measured = Annotated[
@@ -48,15 +48,15 @@ AtSpeeds = Annotated[
     Any,
     AsText(lambda _, text, scene: parse_speeds(text, scene), absent=none_given),
     Parameter(
-        help='Speeds of the rows where the data have none, e.g. "0, 50 rad/s"; default: at rest, of loads '
+        help='Speed of each row, if the data contain none, e.g. "0, 50 rad/s"; default: 0, but for loads '
         "and responses the final speed of the scene's motion."
     ),
 ]
 ColumnsOfFile = Annotated[
     tuple[str, ...],
     Parameter(
-        help='Columns of the file, by quantity, separated by semicolons: "tip = TipDxb1; root moment = '
-        'RootMyb1", with a unit where the file has none: "tip by tip force [mm/N] = UY_2".',
+        help='Column of the file for each quantity, separated by semicolons: "tip = TipDxb1; root moment = '
+        'RootMyb1", with a unit if the file states none: "tip by tip force [mm/N] = UY_2".',
         negative="",
         consume_multiple=False,
         show_default=False,
@@ -65,7 +65,7 @@ ColumnsOfFile = Annotated[
 Uncertainty = Annotated[
     str | None,
     Parameter(
-        help='Standard uncertainty where the data have none, e.g. "0.5 Hz" or "1 %".',
+        help='Standard uncertainty of the values, if the data contain none, e.g. "0.5 Hz" or "1 %".',
         allow_leading_hyphen=True,
     ),
 ]
@@ -161,7 +161,7 @@ def identify(
 def _untold(found: bd.Identification) -> str:
     """Name the parameters that the data do not determine; empty if the data determine all of them."""
     lost = [name for name, value in zip(found.names, found.value, strict=True) if np.isnan(value)]
-    return f"the data do not determine {' and '.join(lost)}: see what would help" if lost else ""
+    return f"the data do not determine {' and '.join(lost)}: the result says what would help" if lost else ""
 
 
 def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None:

@@ -93,7 +93,7 @@ def sensitivities(
         result = bd.crossing_sensitivities(scene, top, count, named, order or 1, discretization)
     each = zip(result.answers, np.isfinite(result.value), strict=True)
     lost = " and ".join(name for name, known in each if not known)
-    return Answer(result, lost and f"{lost}: no such frequency, and no derivative of it")
+    return Answer(result, lost and f"{lost}: no finite value, and so no derivative")
 
 
 # Studies ---------------------------------------------------------------------------------------------
@@ -164,7 +164,10 @@ def study(
 
 
 def _study(scene: bd.Scene, axes: Sequence[Axis], varying: VaryOptions, how: dict[str, Any]) -> Answer:
-    """Compute all combinations of the varied inputs, with a progress bar."""
+    """Compute all combinations of the varied inputs, with a progress bar.
+
+    `how` contains the other arguments of `bd.study`, by name.
+    """
     inputs = {axis.input.path: axis.values for axis in axes}
     with at_work("designs") as progress:
         result = bd.study(scene, inputs, combine=varying.combine, progress=progress, **how)
@@ -178,7 +181,10 @@ def _study(scene: bd.Scene, axes: Sequence[Axis], varying: VaryOptions, how: dic
 
 
 def _spread(scene: bd.Scene, inputs: list[Input], spreading: SpreadOptions, how: dict[str, Any]) -> Answer:
-    """Compute the ranges of the results over tolerances, with a progress bar."""
+    """Compute the ranges of the results over tolerances, with a progress bar.
+
+    `inputs` are the inputs that may have a tolerance; `how` contains the other arguments of `bd.spread`.
+    """
 
     def nominal(entry: Input) -> tuple[float, str]:
         return nominal_value(scene, entry.path, how["speed"] or 0.0), unit_of(entry.path) or ""
@@ -195,7 +201,10 @@ def _spread(scene: bd.Scene, inputs: list[Input], spreading: SpreadOptions, how:
 
 
 def _speed_of(scene: bd.Scene, what: str, speed: str | None, axes: Sequence[Axis]) -> float | None:
-    """Return the speed in the option [rad/s], or the scene's speed if the result needs one; else None."""
+    """Return the speed in the option [rad/s]; without the option, the final speed of the scene, or None.
+
+    It is None if the result `what` needs no speed, or the speed is one of the varied inputs `axes`.
+    """
     varied = any(axis.input.path == SPEED for axis in axes)
     needed = "speed" in KINDS[what].options and not varied
     if speed is not None:
@@ -204,10 +213,13 @@ def _speed_of(scene: bd.Scene, what: str, speed: str | None, axes: Sequence[Axis
 
 
 def inputs_of(scene: bd.Scene) -> list[Input]:
-    """Return descriptions, as inputs of a file, of the numbers that a study may vary, and of the speed."""
+    """Return the inputs that a study may vary, numbers of the scene file and the speed, with descriptions."""
 
     class ByWholeName(Input):
-        """Input named by its path without "beam.": a factor of a property along the beam, or a list entry."""
+        """An input without a key of its own in a file; its path without "beam." serves as its name.
+
+        Such inputs are the factor of a property that varies along the beam, and an entry of a list.
+        """
 
         @property
         def name(self) -> str:

@@ -55,8 +55,9 @@ class RandomInput:
     velocity : str, optional
         Velocity of the rolling wheel in place of its speed, e.g. "90 km/h".
     input : str, optional
-        bending, across, n1, n2, n3: acceleration of the base; force@20 mm, force@tip, with " across" at the
-        end for that direction; default: bending, for a road n2.
+        Acceleration of the base in a direction: bending, across, n1, n2 or n3; or a force at a position:
+        force@20 mm or force@tip, with " across" at the end if it acts across. Default: bending, or n2 for a
+        road.
     """
 
     psd: Path | None = None
@@ -93,7 +94,7 @@ class RandomInput:
             unit = "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz"
             return read_spectrum(self.psd, unit, self.psd_axes or "log")
         if self.psd_axes is not None:
-            raise ValueError(f"--psd-axes = {self.psd_axes}: give it with --psd; a road has its own")
+            raise ValueError(f"--psd-axes = {self.psd_axes}: give it with --psd; for a road, leave it out")
         limit = {} if self.highest is None else {"highest": parse_positive("--highest", self.highest, "1/m")}
         return bd.RoadRoughness(
             self.road or parse_positive("--roughness", self.roughness or "", "m3"), **limit
@@ -197,7 +198,7 @@ Output = Annotated[
     AsText(lambda _, text, __: parse_output(text), default="tip"),
     Parameter(
         help="tip, tip across, tip acceleration, root moment, root strain; deflection@20 mm, "
-        "acceleration@20 mm; of a harvester voltage, current, layer strain."
+        "acceleration@20 mm; for a harvester also voltage, current, layer strain."
     ),
 ]
 
@@ -246,8 +247,8 @@ def response(
         Frequencies with their unit: start:stop:count at equal ratios, e.g. "1:1000:400 Hz", or a
         list, e.g. "50, 60 Hz".
     input
-        bending, across, n1, n2, n3: acceleration of the base; force@20 mm, force@tip, with "
-        across" at the end for that direction.
+        Acceleration of the base in a direction: bending, across, n1, n2 or n3; or a force at a
+        position: force@20 mm or force@tip, with " across" at the end if it acts across.
     modes
         Number of modes; auto: the fewest that keep the error below 1e-9 of the largest response.
     """
@@ -260,7 +261,7 @@ def response(
     'beamdyn random examples/rough_road.toml --road C --velocity "90 km/h"',
     screen="Random road",
     opens_with=("--road", "A", "--velocity", "90 km/h", "--damping-ratio", "0.03"),
-    about_scene="The scene, with a rolling wheel for a road.",
+    about_scene="The scene; for --road, with a rolling wheel.",
 )
 def random(
     scene: bd.Scene,

@@ -47,10 +47,10 @@ class CycleOptions:
         In a transient: also count the cycles of this quantity, where it is largest (rainflow counting, ASTM
         E1049; needs the extra fatigue).
     woehler : str, optional
-        Of these cycles: the range of equal cycles that do the same damage (Miner), for exponents m of the
-        Woehler (S-N) curve, e.g. "3, 5, 10".
+        Exponents m of the Woehler (S-N) curve, e.g. "3, 5, 10"; with --cycles. For each the result states the
+        range of cycles of equal size that do the same damage as the counted ones, by Miner's rule.
     equivalent_cycles : float, optional
-        Number of these equal cycles; default: 1.
+        Number of these cycles of equal size; default: 1.
     cycles_file : Path, optional
         Write range, mean and count of each cycle into this file: .csv, .tsv, .txt or .json.
     """
@@ -61,7 +61,10 @@ class CycleOptions:
     cycles_file: Annotated[Path | None, WRITTEN] = None
 
     def check(self, in_transient: bool) -> None:
-        """Raise an error for options that would have no effect."""
+        """Raise an error for options that would have no effect, or whose values are not valid.
+
+        None of the options has an effect on other analyses than a transient.
+        """
         if self.cycles is not None and not in_transient:
             raise ValueError("--cycles belongs to a transient: give --t-end, too")
         text = "" if self.woehler is None else f'"{self.woehler}"'
@@ -201,7 +204,7 @@ def loads(
 
 @analysis(
     'beamdyn random-loads examples/rough_road.toml --road C --at "0, 10 mm"',
-    about_scene="The scene, damped; with a rolling wheel for a road.",
+    about_scene="The scene, with damping; for --road, with a rolling wheel.",
 )
 def random_loads(
     scene: bd.Scene,
@@ -242,7 +245,7 @@ def _check_together(kinds: list[str], angle: float | None, window: str | None) -
     if window is not None and "--t-end" not in kinds:
         raise ValueError("--window belongs to a transient: give --t-end, too")
     if angle is not None and kinds and kinds != ["--speed"]:
-        raise ValueError("--angle belongs to the equilibrium at a --speed: elsewhere the beam rotates")
+        raise ValueError("--angle belongs to the equilibrium at a --speed; otherwise leave it out")
 
 
 def _in_transient(

@@ -146,7 +146,7 @@ def limits(
     discretization: options.Discretization = "ritz",
     outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
-    """Setting angles above which the first frequency rises at low speed, and above which to the top speed.
+    """Setting angles above which the first frequency rises with speed: near rest, and up to the top speed.
 
     Parameters
     ----------

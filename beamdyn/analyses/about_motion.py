@@ -125,7 +125,7 @@ def harvest(
     ----------
     speeds
         Speeds with their unit: start:stop:count, e.g. "10:130:61 rad/s", or a list, e.g. "50, 55 rad/s";
-        of a wheel that rolls also velocities, e.g. "30:120:46 km/h".
+        for a rolling wheel also velocities, e.g. "30:120:46 km/h".
     road
         Class of an additional random road profile by ISO 8608, from A (very good) to H.
     highest

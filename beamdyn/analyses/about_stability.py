@@ -24,7 +24,7 @@ _AMPLITUDES = "motion.fluctuation", "motion.along_n1", "motion.along_n2", "motio
 # Initial options of the screens: frequencies and amplitudes around a region of instability.
 _TONGUE = "--vary", "motion.frequency=118:130:61 Hz", "--vary", "motion.fluctuation=0:0.2:41"
 _FEW = 7  # number of values of each input in a preliminary chart
-_VALUES = 41  # number of amplitudes, if none are given
+_VALUES = 41  # number of pulsation amplitudes in a chart, if the user gives no values
 
 Varied = Annotated[
     tuple[str, ...],

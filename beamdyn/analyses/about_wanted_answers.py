@@ -96,7 +96,7 @@ def _target(found: re.Match[str], scene: bd.Scene) -> bd.Target:
 
 
 def _value(text: str, unit: str, scene: bd.Scene) -> float:
-    """Read a wanted value, in SI units."""
+    """Convert the text of a wanted value, such as "80 Hz", to a number in SI units."""
     if unit == "rad/s":
         return parse_speed("--so-that", text, scene)
     return parse_quantity("--so-that", text, unit) if unit else float(text)

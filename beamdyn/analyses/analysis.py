@@ -224,7 +224,7 @@ class Analysis:
         for name, each in self.options.items():
             if DRAWN in _extras(each.annotation) and given[name] is not None and not outputs.draws:
                 remedy = "give --plot or --report, or leave it out"
-                raise ValueError(f"{_option(name)} = {given[name]}: it is what a picture shows; {remedy}")
+                raise ValueError(f"{_option(name)} = {given[name]}: it only affects pictures; {remedy}")
         scene = load_scene(file)
         if self.moving(given):
             check_moves(scene, file)

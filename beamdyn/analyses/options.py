@@ -58,9 +58,7 @@ Count = Annotated[int, values.at_most(100)]
 CountOrAuto = Annotated[int | Literal["auto"], values.at_most(100)]
 SmallestBasis = Annotated[
     CountOrAuto,
-    Parameter(
-        help="Size of the modal basis; auto: the smallest whose modal truncation error meets the tolerance."
-    ),
+    Parameter(help="Number of modes; auto: the smallest whose modal truncation error meets the tolerance."),
 ]
 Order = Annotated[int, values.at_most(5)]
 FrequencyTolerance = Annotated[
@@ -91,7 +89,7 @@ SectionPoints = Annotated[
     list[list[float]] | None,
     AsText(lambda option, text, _: values.parse_points(option, text), absent=none_given),
     Parameter(
-        help='Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": along its first direction, '
-        "in which the beam bends, and along the second. Default: the outermost."
+        help='Points of the section with their unit, e.g. "-0.1:0, 0.1:2 mm": coordinates in its first '
+        "direction, in which the beam bends, and in the second. Default: the outermost points."
     ),
 ]

@@ -33,7 +33,10 @@ def at_most(most: int) -> Parameter:
     """Describe a whole-number option with a largest value, above which a command would take hours."""
 
     def whole(kind: object, tokens: Sequence[Token]) -> int | str:
-        """Read a whole number, or "auto" if allowed; the option parser cyclopts would cut 2.5 down to 2."""
+        """Read a whole number, or "auto" if the type `kind` is not int: a converter for cyclopts.
+
+        By itself the option parser cyclopts would cut 2.5 down to 2.
+        """
         text, auto = tokens[0].value.strip(), kind is not int
         if auto and text == "auto":
             return text
@@ -49,7 +52,10 @@ def at_most(most: int) -> Parameter:
 
 
 def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
-    """Read a number with its unit, in SI units; an InvalidInput names the option."""
+    """Read a number with its unit, in SI units; raise InvalidInput with the option's name if it is none.
+
+    `of` is the SI unit, or the description of the quantity.
+    """
     try:
         return quantity(text, of) if isinstance(of, str) else of.convert(text)
     except InvalidInput as error:
@@ -65,7 +71,7 @@ def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = N
 
 
 def parse_speed(option: str, text: str, scene: bd.Scene | None = None) -> float:
-    """Read a speed with its unit [rad/s]; a ValueError names the option.
+    """Read a speed with its unit [rad/s]; raise ValueError with the option's name if it is none.
 
     For a scene with a rolling wheel, the text may be the velocity of the vehicle, such as "60 km/h".
     """
@@ -147,7 +153,8 @@ def parse_speeds(text: str, scene: bd.Scene | None = None) -> np.ndarray:
 def parse_amounts(option: str, text: str, of: str | Quantity, example: str) -> tuple[list[float], list[str]]:
     """Read a list of numbers with a unit at its end, such as "62.1, 389 Hz".
 
-    Return the values, in SI units, and the numbers as written.
+    Return the values, in SI units, and the numbers as written.  `of` is the SI unit, or the description of
+    the quantity; `example` is a valid text for the error message.
     """
     found = _UNIT.search(text.strip())
     values = [value for (value,) in _tuples(option, text, 1, example, of)]
@@ -165,7 +172,10 @@ def parse_points(option: str, text: str) -> list[list[float]]:
 
 
 def _tuples(option: str, text: str, size: int, example: str, of: str | Quantity = "m") -> list[list[float]]:
-    """Read a list of groups of `size` numbers, with one unit for all at the end."""
+    """Read a list of groups of `size` numbers, with one unit for all at the end; return values in SI units.
+
+    `of` is the SI unit, or the description of the quantity; `example` is a valid text for the error message.
+    """
     unit = _UNIT.search(text.strip())
     members = text.strip()[: unit.start()].split(",") if unit else []
     parts = [[number.strip() for number in member.split(":")] for member in members]
@@ -192,5 +202,5 @@ def check_moves(scene: bd.Scene, path: Path) -> None:
     """Raise an error for a scene without a motion."""
     if scene.motion is None:
         example = 'kind = "spin_up", speed = "50 rad/s" and duration = "10 s"'
-        sentence = f"motion: missing; a motion in time needs it: give a table [motion], e.g. with {example}"
+        sentence = f"motion: missing, but this analysis needs it: give a table [motion], e.g. with {example}"
         raise ConfigError(str(path), [sentence], ["motion"])

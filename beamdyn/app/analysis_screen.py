@@ -32,7 +32,7 @@ from beamdyn.common.screens.screens import Screen
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_FEW_MODES = 6  # number of modes of a preliminary result, if that of the full result follows from a tolerance
+_FEW_MODES = 6  # number of modes of a preliminary result, if the full result chooses its own by a tolerance
 _HEADLINES = 3  # largest number of parts of a result's one-line summary that a screen shows
 _NARROW = 4.4, 4.0  # size of a picture on a narrow page [inch]
 _OF_COMMANDS = (
@@ -71,7 +71,8 @@ def analysis_screen(analysis: Analysis) -> Screen:
         return answer.result
 
     def headline(answer: Answer) -> Iterator[KeyResult]:
-        beside = "", warned(getattr(answer.result, "warnings", ()))  # without warnings, which are shown below
+        # Parts that are omitted: the empty one, and the number of warnings, which the screen shows below.
+        beside = "", warned(getattr(answer.result, "warnings", ()))
         lines = (line for line in answer.result.headline() if line not in beside)
         yield KeyResult("in short", "; ".join(map(in_files, islice(lines, _HEADLINES))))
 
@@ -83,7 +84,10 @@ def analysis_screen(analysis: Analysis) -> Screen:
 
 
 def _drawn_answer(answer: Answer, narrow: bool = False) -> Figure:
-    """Draw the picture of a result, without notes below it, which the page shows separately."""
+    """Draw the picture of a result, for a narrow page if `narrow`.
+
+    Notes are not written below the picture, as the page shows them separately.
+    """
     result: Any = answer.result
     if narrow:
         own = hasattr(result, "picture_size")  # a picture with several panels chooses its own size
@@ -107,7 +111,10 @@ def first_entries(analysis: Analysis) -> dict[str, str]:
 
 
 def _section(analysis: Analysis) -> type[Section]:
-    """Make the class of the form fields for an analysis' options, also grouped ones; no fields for files."""
+    """Make the class whose fields are the form fields of an analysis: one for each option, except for files.
+
+    Options in groups have fields of their own.
+    """
     fields: dict[str, Any] = {}
     for name, option in analysis.shown.items():
         if group := _group_of(option.annotation):

@@ -41,7 +41,7 @@ class DeckInput(Section):
         str,
         Lines(
             meaning="text of a file of ElastoDyn, FAST 7, BeamDyn or BModes, or a table with units in its "
-            "headings; File opens it, or paste it here"
+            "headings; open it with the button File, or paste it here"
         ),
     ]
     length: Annotated[

@@ -15,7 +15,8 @@ _DEEP = 0.012  # thickness of the drawn beam, as a fraction of its length
 _SHOWN = 0.22  # largest drawn deflection, as a fraction of the length of the beam
 _PHI, _PSI, _ETA = np.radians((36.0, 35.0, 24.0))
 _ROOT, _LENGTH, _TIP = np.array([1.0, 0.0]), 0.9, 0.16
-_AWAY = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])  # offset of a unit length along y (oblique projection)
+# How a unit length along y, across the strip, is drawn in oblique projection: (right, up).
+_AWAY = 0.5 * np.array([np.cos(0.7), np.sin(0.7)])
 _SECTIONS = 4  # number of positions along the beam between two drawn cross-sections
 # Radius of the arrow for the direction of rotation, divided by the drawn radius of the beam's root.
 _HUB = 0.16
@@ -162,7 +163,10 @@ def _plan(paths: set[str]) -> Drawing:
 
 
 def _section(paths: set[str]) -> Drawing:
-    """Draw the cross-section at the root, seen from the tip."""
+    """Draw the cross-section at the root, seen from the tip.
+
+    Its symbols depend on the paths of the inputs in the form: h and b if "beam.thickness" is one, else c.
+    """
     s = Sketch()
     e, f = np.array([np.cos(_PSI), np.sin(_PSI)]), np.array([-np.sin(_PSI), np.cos(_PSI)])
     h, b = 0.34, 0.9

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], mode and line that cross
 _SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds, in a full and in a preliminary result
 _ROUGH = 1e-3  # tolerance of a preliminary result
-_NOT_MARKED = "resonance speeds have other physics than the frequencies, and are not marked in the drawing"
+_NOT_MARKED = "resonance speeds are not marked in the drawing: their physics differs from the frequencies'"
 _HEADROOM = 1.08  # height of the chart, as a multiple of the highest frequency
 _MOST_ABOVE = 2.0  # highest frequency shown, as a multiple of the highest excitation frequency
 
@@ -201,9 +201,9 @@ def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
 def describe_margin(margin: Margin) -> str:
     """Describe a margin: the distance between the natural frequency and the nearest excitation line."""
     if not margin.margin:
-        return f"{margin.line.name} meets it"
+        return f"{margin.line.name} meets its frequency"
     where = "above" if margin.margin > 0 else "below"
-    return f"{margin.line.name} is {100 * abs(margin.margin):.3g} % {where} it"
+    return f"{margin.line.name} is {100 * abs(margin.margin):.3g} % {where} its frequency"
 
 
 def headline(answer: Frequencies) -> Iterator[KeyResult]:
@@ -213,7 +213,7 @@ def headline(answer: Frequencies) -> Iterator[KeyResult]:
     for words, frequency in (("first frequency at rest", first[0]), (f"at {brief(top, unit)}", first[-1])):
         yield KeyResult(words, number(frequency, "Hz") if np.isfinite(frequency) else "diverges")
     for margin in answer.margins[:1]:
-        yield KeyResult(f"at the motion's {brief(margin.speed, unit)}", number(margin.frequency, "Hz"))
+        yield KeyResult(f"at the motion's speed, {brief(margin.speed, unit)}", number(margin.frequency, "Hz"))
     if critical is None:
         return
     if np.isfinite(critical.speed):

@@ -25,7 +25,7 @@ from beamdyn.files.scene_inputs import with_physics_as_table
 from beamdyn.files.scenes import parse_scene
 
 SHOWN = [*(analysis for analysis in analyses().values() if analysis.screen), campbell]
-# Example files with which the documents other than "scene" open, by name of the document.
+# Example file that is open at first, for each kind of input file (`Document`) other than "scene".
 _BASES = {"harvester": "bimorph.toml", "periodic motion": "pulsating_wheel.toml"}
 _ASIDE = {
     "options.top_speed": "150 rad/s",
@@ -53,7 +53,7 @@ def _on(base: str) -> list[Analysis]:
 def _scene(
     name: str, base: str, shown: Sequence[Analysis], aside: Mapping[str, str], *special: Screen
 ) -> Document:
-    """Make a `Document` for scenes, which opens with the file text `base`.
+    """Make a `Document`, a kind of input file with its screens, for scenes; it opens with the text `base`.
 
     Its screens are the `special` ones and those made from the analyses `shown`; `aside` contains initial
     texts of form fields that are not part of the scene file.

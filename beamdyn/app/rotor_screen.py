@@ -15,11 +15,12 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 
-_STEPS = 200  # least number of steps per beam length, for rounding dragged lengths
+# Dragged lengths are rounded to steps of a power of ten; at least so many steps make the length of the beam.
+_STEPS = 200
 
 
 def solve(tables: Mapping[str, Any]) -> RotorDrawing:
-    """Make the drawing of the rotor, if the scene can be computed."""
+    """Make the drawing of the rotor; raise an error if the scene cannot be computed."""
     scene = read_scene(tables)
     first_frequency(scene)  # raises an error if the scene cannot be computed
     return draw_rotor(scene)

@@ -93,10 +93,10 @@ class RunInput(Section):
     """[run]: how long a transient is, and the window in which its peak is sought."""
 
     end: Annotated[float, Quantity("s", meaning="end of the run", above=0, remedy='e.g. "12 s"')]
-    window_start: Annotated[float, Quantity("s", meaning="start of the window of the peak", least=0)] = 0.0
+    window_start: Annotated[float, Quantity("s", meaning="start of the window for the peak", least=0)] = 0.0
     window_end: Annotated[
         float | None,
-        Quantity("s", meaning="end of the window of the peak; that of the run if not given", above=0),
+        Quantity("s", meaning="end of the window for the peak; default: end of the run", above=0),
     ] = None
 
 

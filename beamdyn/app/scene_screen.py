@@ -115,8 +115,8 @@ def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> Rendera
     sizes: dict[str, float] = {}
     for name, change in effects.changes.items():
         known = np.asarray(change)[np.isfinite(change)]
-        if known.size:  # the relative change with the largest magnitude
-            sizes[name] = float(known[np.abs(known).argmax()])
+        if known.size:
+            sizes[name] = float(known[np.abs(known).argmax()])  # the change of largest magnitude
     rows = []
     for name in sorted(sizes, key=lambda name: -abs(sizes[name])):
         how = joined("; ", filter(None, (effects.reasons.get(name, ""), effects.assumed.get(name, ""))))
@@ -132,7 +132,7 @@ def left_out_table(effects: left_out_effects.LeftOutEffects, of: str) -> Rendera
         (name, "not modelled", "", in_files(effects.reasons.get(name, ""))) for name in effects.not_modelled
     ]
     heads = "left out", "largest change", "size, logarithmic", "how to include it"
-    return table(f"What the physics leaves out, and by how much it changes the {of}", heads, rows, (0, 2, 3))
+    return table(f"Effects left out, and by how much each would change the {of}", heads, rows, (0, 2, 3))
 
 
 def bar(change: float) -> str:

@@ -22,7 +22,7 @@ _SPEEDS = 242
 # Relative distances from a resonance speed at which further speeds are computed.
 _BESIDE = (-4e-3, -1e-3, -2e-4, 2e-4, 1e-3, 4e-3)
 _STABLE = "stable"
-_PAST_LIMIT = f"past {LARGE_DEFLECTION:g} of the length: not linear"
+_PAST_LIMIT = f"deflection past {LARGE_DEFLECTION:g} of the length: not linear"
 
 
 def solve(tables: Mapping[str, Any]) -> SteadyResponse:
@@ -79,7 +79,10 @@ def stretches(answer: SteadyResponse) -> np.ndarray:
 
 
 def _bands(x: np.ndarray, said: np.ndarray) -> Iterator[ChartBand]:
-    """Yield bands of speeds with one reason not to trust the response; each ends midway between two."""
+    """Yield bands of speeds at which the response is invalid for the same reason.
+
+    Each band ends midway between two speeds `x` with different reasons `said`.
+    """
     changes = np.flatnonzero(said[1:] != said[:-1]) + 1
     ends = [x[0], *((x[:-1] + x[1:]) / 2)[changes - 1], x[-1]]
     for start, (low, high) in zip([0, *changes.tolist()], pairwise(ends), strict=True):

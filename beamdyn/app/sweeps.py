@@ -85,7 +85,7 @@ class SweepCase:
         crossings, best = self.crossings(), 0
         if not self.scene.is_damped and len(crossings):
             bound = "without damping the amplitude at a resonance has no bound"
-            advice = "give a ratio, e.g. 0.01, or sweep the amplitude at the top speed"
+            advice = "give a damping ratio, e.g. 0.01, or sweep the amplitude at the top speed"
             raise InvalidValue("model.damping_ratio", 0.0, bound, advice)
         speeds = np.union1d(np.linspace(self.top / _COARSE, self.top, _COARSE), crossings)
         for finer in range(_ROUNDS + 1):
@@ -127,7 +127,7 @@ def frequency_outputs(modes: int) -> list[Output]:
 
 
 def _frequency(mode: int, share: float, case: SweepCase) -> float:
-    """Compute a natural frequency [Hz] at a fraction of the top speed; nan if the mode diverges."""
+    """Compute a natural frequency [Hz] at the fraction `share` of the top speed; nan if the mode diverges."""
     return float(case.ask(natural_modes, share * case.top, case.modes).frequency[mode])
 
 
@@ -144,7 +144,11 @@ _MODEL_ERROR = Output("model_error", "largest model error", lambda case: case.mo
 
 
 def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str) -> Sweeps:
-    """Make the sweeps that a screen offers; their results depend on the number of modes in the form."""
+    """Make the sweeps that a screen offers.
+
+    ``outputs(modes)`` lists the results for the number of modes in the form; `example` is the initial text
+    for the varied input, `results` that for the names of the results.
+    """
 
     def names(tables: Mapping[str, Any]) -> Sequence[str]:
         return [output.name for output in outputs(read(tables)[2])]
@@ -170,7 +174,10 @@ def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str
 
 
 def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
-    """Yield the warnings of the case with the largest model error, and of the first with an unknown one."""
+    """Yield the warnings of two cases: that with the largest model error, and the first without a known one.
+
+    The first is left out if no model error exceeds 1 %.
+    """
     large = [case for case in cases if case.model_error > LARGE_MODEL_ERROR]
     unknown = [case for case in cases if np.isnan(case.model_error)]
     for some, what in (

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 # Total computing time of a diagram's measurements [s], for a full and for a preliminary result.
 _BUDGET, _SOON = 2.0, 0.05
 _RUNS = 5  # number of timed runs of the chosen model; the shortest time counts
-# Placeholder for a diagram that a preliminary result lacks.
+# Text in place of a diagram or number that a preliminary result lacks: it follows with the full result.
 _FOLLOWS = "follows"
 _LATER = Diagram.make(_FOLLOWS, "", "", 0.0, ())
 _KEPT = 8  # largest number of scenes whose measurements are stored
@@ -212,7 +212,7 @@ def rows(answer: Trade) -> Iterator[Sequence[object]]:
 
 
 def draw(answer: Trade, _: float = 0.0) -> Figure:
-    """Draw both diagrams side by side."""
+    """Draw the diagrams of numerical error and of total error over computing time, side by side."""
     known = [d for d in (answer.numerical, answer.of_physics) if d.measurements]
     figure = new_figure(6.5 * len(known), 5.0)
     for diagram, ax in zip(known, np.atleast_1d(figure.subplots(1, len(known))), strict=True):

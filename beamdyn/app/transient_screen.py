@@ -140,7 +140,10 @@ def _passages(scene: Scene, end: float) -> Iterator[tuple[float, str]]:
 
 
 def drawings(answer: Playable, place: float = 1.0) -> Rows:
-    """Draw the beam at a time, in each direction, with its extremes within a period before and after."""
+    """Draw the beam in each direction at the time of the slider's position `place`, from 0 to 1.
+
+    Its extremes within a period before and after are drawn in grey.
+    """
     run, now = answer.run, answer.time(place)
     unit, words = run.display_units.length_unit(), modelled_directions(run.scene)
     x = np.linspace(0.0, run.scene.beam.length, _PLACES)
@@ -158,7 +161,7 @@ def drawings(answer: Playable, place: float = 1.0) -> Rows:
 
 
 def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
-    """Return times [s] within some periods of the present time, and within the simulation."""
+    """Return times [s] from `periods` periods before the time `now` to as many after, in the simulation."""
     path, reach = answer.run.path, periods * answer.period
     return np.linspace(max(now - reach, path.start), min(now + reach, path.end), _TIMES)
 
@@ -167,7 +170,10 @@ def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
 
 
 def charts(answer: Playable, place: float = 1.0) -> Sequence[Chart]:
-    """Make charts of the tip deflection over the whole simulation and around the present time."""
+    """Make charts of the tip deflection over the whole simulation and around the present time.
+
+    The present time is that of the slider's position `place`, from 0 to 1.
+    """
     run, now, unit = answer.run, answer.time(place), answer.run.display_units.length_unit()
     t = _around(answer, now, _CLOSE)
     near = [ChartCurve(name, t, unit.of(run.deflection(t, i))) for i, name in enumerate(_names(run))]
@@ -210,7 +216,7 @@ def headline(answer: Playable) -> Iterator[KeyResult]:
 
 TRANSIENT = scene_screen(
     "Transient",
-    "The motion from rest: the beam, and its tip over time.",
+    "Motion of the beam from rest, and the deflection of its tip over time.",
     solve,
     ("run",),
     result=lambda answer: answer.run,

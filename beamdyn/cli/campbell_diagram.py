@@ -88,7 +88,8 @@ def campbell(
     outputs.check(*scenes, crossings=crossings)
     options: dict[str, Any] = {"modes": modes, "discretization": discretization, "tolerance": tolerance}
     inputs = _read_all(scenes, length, hub_radius)
-    alone = inputs[0].scene if len(inputs) == 1 else None  # of several scenes, speeds in km/h are undefined
+    # A speed in km/h needs the rolling radius of one scene: with several scenes it is refused.
+    alone = inputs[0].scene if len(inputs) == 1 else None
     bent = any(given.scene.physics.large_deflection for given in inputs)
     speeds, unit = parse_top(top_speed, alone, bent)
     question = _question(
@@ -110,7 +111,7 @@ def campbell(
 
 
 class _BladeFile(NamedTuple):
-    """A file with its scene, the scene as text, and data of a blade file that a scene cannot hold."""
+    """A scene or blade file: path, scene, scene as text, warnings on data that a scene cannot hold."""
 
     path: Path
     scene: Scene
@@ -152,7 +153,7 @@ def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -
     stems = [given.path.stem for given in inputs]
     names = stems if labels is None else [part.strip() for part in labels.split(",")]
     if len(names) != len(inputs) or not all(names):
-        raise ValueError(f'--labels = "{labels}": give one label for each of {len(inputs)} scenes')
+        raise ValueError(f'--labels = "{labels}": give one label per scene, {len(inputs)} in all')
     twice = [name for name in dict.fromkeys(names) if names.count(name) > 1]
     if twice:
         remedy = "give --labels, one for each" if labels is None else "give each its own"

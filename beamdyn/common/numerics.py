@@ -1,7 +1,7 @@
 """Numerical tools: assignment problem, Gauss quadrature, Legendre series, ellipses, triangular systems.
 
 Triangular systems are not solved by `scipy.linalg.solve_triangular`: its LAPACK routine starts threads even
-for small matrices, and on a busy machine these wait for milliseconds although the arithmetic takes
+for small matrices, and on a busy machine the threads wait for milliseconds although the arithmetic takes
 microseconds.
 """
 
@@ -48,7 +48,10 @@ def gauss_points_on(ends: np.ndarray, points: int) -> np.ndarray:
 
 
 def gauss_weights_on(ends: np.ndarray, points: int) -> np.ndarray:
-    """Return weights (c points,) of the Gauss points on c intervals between ascending ends (c + 1,)."""
+    """Return the weights of the Gauss points on c intervals between ascending ends (c + 1,).
+
+    Shape (c * points,): the weights of the first interval, then those of the second, and so on.
+    """
     return (np.diff(ends)[:, None] / 2 * gauss_rule(points)[1]).ravel()
 
 
@@ -60,14 +63,20 @@ def legendre_values(points: int, degree: int) -> np.ndarray:
 
 @cache
 def legendre_series(points: int) -> np.ndarray:
-    """Return the matrix that converts values at Gauss points to Legendre coefficients of the interpolant."""
+    """Return the matrix that converts values at Gauss points to Legendre coefficients of the interpolant.
+
+    Shape (points, points), for Gauss points on [-1, 1].
+    """
     values, scale = legendre_values(points, points - 1), np.arange(points) + 0.5
     # Gauss weights by Christoffel's formula (reciprocal sums of squares): numpy's have errors up to 1e-12.
     return scale[:, None] * values.T / (values**2 @ scale)
 
 
 def longer_semi_axis(c: np.ndarray) -> np.ndarray:
-    """Compute the longer semi-axis (...) of ellipses Re(c exp(i phi)) in d dimensions, for c (d, ...)."""
+    """Compute the longer semi-axes of ellipses Re(c exp(i phi)), 0 <= phi < 2 pi, in d dimensions.
+
+    `c` has the shape (d, ...), the result the shape (...).
+    """
     return np.sqrt(((np.abs(c) ** 2).sum(axis=0) + np.abs((c * c).sum(axis=0))) / 2)
 
 

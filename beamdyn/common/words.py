@@ -56,7 +56,7 @@ class Part(Words):
         return str(self)
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the part as the function `word` of a medium words it."""
+        """Return the wording of the part that the function `word` of a medium gives."""
         return word(self)
 
 
@@ -225,7 +225,10 @@ def told_from(value: float, limit: float) -> str:
 
 
 def percent(value: float, sign: str = "") -> str:
-    """Format a fraction in percent with two digits, never with a positive exponent."""
+    """Format a fraction in percent with two digits, never with a positive exponent.
+
+    With the `sign` "+", positive numbers have a plus sign.
+    """
     digits = f"{100 * value:{sign}.2g}"
     return f"{100 * value:{sign}.0f} %" if "e+" in digits else f"{digits} %"
 

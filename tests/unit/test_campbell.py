@@ -446,7 +446,7 @@ MISTAKES = {
         (BLADE.with_suffix(".dat"), "b.dat", "--top-speed", "5 rpm", "--length", "5 m"),
         ("--length", "one blade", "import"),
     ),
-    "one label of two": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a"), ("--labels", "2 scenes")),
+    "one label of two": ((BLADE, BLADE, "--top-speed", "5 rpm", "--labels", "a"), ("--labels", "2 in all")),
 }  # fmt: skip
 
 

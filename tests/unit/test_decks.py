@@ -455,7 +455,7 @@ def test_a_bad_main_file_of_bmodes_is_refused_by_line(folder, changes, said):
         ("; mass [kg/m]", " | mass [kg/m]", 2, "separate columns by commas, semicolons or tabs"),
         ("69.7178477690289", "20", 6, "follows"),
         (written.CSV_ROWS[2], written.CSV_ROWS[1], 6, "it repeats line 5"),
-        ("109.0879265091864", "135.3346456692913", 8, "a jump to stand between other stations"),
+        ("109.0879265091864", "135.3346456692913", 8, "expected it twice only between other positions"),
     ],
 )  # fmt: skip
 def test_a_bad_csv_table_is_refused_by_line(folder, old, new, line, said):

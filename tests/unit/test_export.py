@@ -112,11 +112,11 @@ def test_missing_directory_is_named(tmp_path):
 BAD = {
     "one position": ({"x": X[:1], "shapes": SHAPES[:, :1]}, "at least two"),
     "descending": ({"x": X[::-1]}, "ascend"),
-    "too few labels": ({"labels": LABELS[:1]}, "1 labels times 11 positions"),
-    "transposed": ({"shapes": SHAPES.T}, "2 labels times 11 positions"),
+    "too few labels": ({"labels": LABELS[:1]}, "expected 1 x 11, labels by positions"),
+    "transposed": ({"shapes": SHAPES.T}, "expected 2 x 11, labels by positions"),
     "nan": ({"shapes": SHAPES * np.nan}, "real and finite"),
     "complex": ({"shapes": SHAPES * 1j}, "real part"),
-    "labels alike": ({"labels": LABELS[:1] * 2}, "two are alike"),
+    "labels alike": ({"labels": LABELS[:1] * 2}, "two are equal"),
     "negative width": ({"width": -0.01}, "0 or more"),
     "widths of another grid": ({"width": X[1:]}, "one for each of 11"),
     "surface of a line": ({"shapes": np.ones((2, 11, 3)), "width": 0}, "a line has no deflections across"),
@@ -214,7 +214,7 @@ def test_motion_that_exists_is_kept_unless_forced(tmp_path, suffix):
 @pytest.mark.parametrize(
     ("x", "t", "motion", "message"),
     [
-        (X, T, MOTION.T, "6 times and 11 positions"),
+        (X, T, MOTION.T, "expected 6 x 11, times by positions"),
         (X, T[::-1], MOTION, "ascend"),
         (X[::-1], T, MOTION, "ascend"),
         (X, T, MOTION * np.nan, "finite"),

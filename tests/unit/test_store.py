@@ -139,13 +139,13 @@ def test_a_damaged_or_missing_marker_is_written_again(tmp_path, marker):
     else:
         (tmp_path / "store.json").write_text(marker)
     assert Store(tmp_path, "test").read(key) == {"value": 1.0}
-    with pytest.raises(ValueError, match="something else than a sweep"):
+    with pytest.raises(ValueError, match="something other than a sweep"):
         Store(tmp_path, "sweep")
 
 
 def test_a_store_of_another_kind_is_refused(tmp_path):
     Store(tmp_path, "brakes")
-    with pytest.raises(ValueError, match="something else than a test"):
+    with pytest.raises(ValueError, match="something other than a test"):
         Store(tmp_path, "test")
 
 

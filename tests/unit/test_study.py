@@ -234,16 +234,16 @@ def test_designs_are_rows_and_places():
     assert designs.at(1, 0) == {"a": 2.0, "b": 3.0}
     assert [*Designs(inputs[:1], "zip").extremes()] == [{"a": 1.0}, {"a": 2.0}]
     assert designs.at(-1, 2) == designs.at(1, -1) == {"a": 2.0, "b": 5.0}
-    with pytest.raises(ValueError, match="give 2 indices"):
+    with pytest.raises(ValueError, match="give one index per axis"):
         designs.at(1)
 
 
 @pytest.mark.parametrize("place", [(2, 0), (0, 3), (-3, 0)])
 def test_a_place_outside_the_designs_is_refused(place):
     inputs = [VariedInput("a", "", np.array([1.0, 2.0])), VariedInput("b", "m", np.array([3.0, 4.0, 5.0]))]
-    with pytest.raises(ValueError, match=r"outside \(2, 3\)"):
+    with pytest.raises(ValueError, match=r"outside the shape \(2, 3\)"):
         Designs(inputs).at(*place)
-    with pytest.raises(ValueError, match=r"outside \(2,\)"):
+    with pytest.raises(ValueError, match=r"outside the shape \(2,\)"):
         Designs(inputs[:1], "zip").at(2)
 
 

@@ -104,7 +104,7 @@ def test_a_speed_that_is_sought_is_not_varied(what, tmp_path, capsys):
 def test_no_model_error_is_stated_of_no_answer(tmp_path, capsys):
     vary = ["--vary", "speed=300,400 rad/s", "--what", "amplitude"]
     _, out, err = run(vary, tmp_path, capsys, TOML + MOTION)
-    assert "not computed: no design has an answer" in out and "of 0 designs" not in out
+    assert "not estimated, as no design has an answer" in out and "of 0 designs" not in out
     assert "there is no answer at any of 2 designs: past the critical speed" in err
 
 

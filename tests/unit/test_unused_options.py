@@ -127,7 +127,7 @@ def test_sensitivities_refuse_what_their_answer_does_not_use(options, said, refu
         (("--tolerance", "1e-3"), "--tolerance = 0.001: the equilibrium does not depend on it; give --t-end"),
         (
             ("--quantity", "strain"),
-            "--quantity = strain: it is what a picture shows; give --plot or --report",
+            "--quantity = strain: it only affects pictures; give --plot or --report",
         ),
     ],
 )
@@ -138,4 +138,4 @@ def test_loads_refuse_what_nothing_uses(options, said, refusal):
 def test_random_loads_refuse_a_quantity_without_a_picture(refusal):
     road = str(EXAMPLES / "rough_road.toml")
     said = refusal("random-loads", road, "--road", "C", "--at", "0 mm", "--quantity", "stress")
-    assert "--quantity = stress: it is what a picture shows; give --plot or --report, or leave it out" in said
+    assert "--quantity = stress: it only affects pictures; give --plot or --report, or leave it out" in said

@@ -29,7 +29,7 @@ def warnings_of(result: Any, tolerance: float | None = None, without: str = "") 
 
 
 def _words_of(result: Any) -> Callable[[Part], str]:
-    """Return the function that words parts of a text: in the result's units, with names as in files."""
+    """Return a function that formats a part of a text: in the result's units, input names as in files."""
     units = result.display_units if isinstance(result, Result) else SI_UNITS
     own: Callable[[Part], str | None] = getattr(result, "in_own_words", lambda part: None)
     return lambda part: in_files(own(part) or in_terms(part, units))
@@ -58,7 +58,11 @@ def describe_left_out(result: Result) -> list[str]:
 
 
 def notes_of(result: Any) -> list[str]:
-    """Return notes for a picture or CSV file: "with large deflection", or else on the model's limits."""
+    """Return the notes on a result in pictures and CSV files.
+
+    The note is "with large deflection" if the scene models it; else the notes state that the result is
+    outside linear theory, or that its model error is large.
+    """
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]

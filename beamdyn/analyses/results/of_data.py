@@ -107,7 +107,7 @@ def curve_columns(result: bd.CurveComparison) -> Columns:
         Column("allowance", (), cells=_percents(own), words="data may be off"),
         Column("model_error", (), cells=_percents(result.model_error), words="left out"),
         Column("verdict", result.verdict),
-        title=f"Measured and computed over {result.along}, by {result.provenance.method}",
+        title=f"Measured and computed curves over {result.along}, by {result.provenance.method}",
         note="\n".join(in_files(said, result.display_units) for said in result.sentences()),
     )
 
@@ -158,7 +158,10 @@ def identification_tables(result: bd.Identification) -> Group:
 def _numbers(
     result: bd.Identification | bd.FoundDesign, said: Callable[[float, str], str]
 ) -> list[tuple[str, ...]]:
-    """Make rows of parameters or design variables: name, value in the scene, value found, its range."""
+    """Make rows of parameters or design variables: name, value in the scene, value found, and its range.
+
+    ``said(value, unit)`` formats a value in SI units.
+    """
     each = zip(result.names, result.units, result.given, result.value, result.low, result.high, strict=True)
     return [
         (in_files(InputName(name)), *(said(float(value), unit) for value in values))
@@ -196,7 +199,7 @@ def design_tables(result: bd.FoundDesign) -> Group:
         "reached",
         "error",
         "",
-        f"relative change over that of {', '.join(in_files(InputName(name)) for name in result.names)}",
+        f"relative change per relative change of {', '.join(in_files(InputName(n)) for n in result.names)}",
     )
     return Group(
         table(title, ("number", "in the scene", "found", "from", "to"), _numbers(result, said), range(5)),

@@ -37,15 +37,14 @@ def response_table(result: bd.FrequencyResponse) -> Group:
     f, size = result.frequencies, np.abs(result.response)
     at = f"{f[0]:.6g} Hz" if len(f) == 1 else f"{f[0]:.6g} to {f[-1]:.6g} Hz"
     more = f"; the largest {_MOST_PEAKS} of {len(peaks)} are shown" if len(peaks) > _MOST_PEAKS else ""
-    note = f"Peaks from {at}, refined between the {len(f)} frequencies{more}."
+    note = f"Peaks in {at}, located also between the {len(f)} given frequencies{more}."
     if any(row[-1] == _NO_WIDTH for row in rows):
-        note += (
-            f" {_NO_WIDTH}: on one side or both the response rises again before it falls to half the power."
-        )
+        said = "no width, as on one side or both the response rises again before it falls to half the power"
+        note += f" {_NO_WIDTH}: {said}."
     i, j = np.unravel_index(int(size.argmax()), size.shape)
     value = supported(float(size[i, j]), float(result.error[i, j]), _DIGITS)
     where = f"{f[i]:.6g} Hz, phase {np.degrees(np.angle(result.response[i, j])):.1f} deg"
-    largest = f"Largest at those given: {value} {result.unit} at {where}; CSV has all."
+    largest = f"Largest at the given frequencies: {value} {result.unit} at {where}; CSV has all."
     heads = "peak at [Hz]", "answers at [Hz]", f"size [{result.unit}]", "half-power bandwidth [Hz]"
     shown = [table(title, heads, rows, ()), Text(note)] if rows else [Text(title), Text(f"No peak at {at}.")]
     return Group(*shown, Text(largest))
@@ -69,11 +68,11 @@ def random_table(result: bd.RandomResponse) -> Group:
     rows = [
         ("root mean square", f"{supported(result.rms, result.rms_error, _DIGITS)}{unit}"),
         ("its estimated error", f"{result.rms_error:.1g}{unit}"),
-        ("three times that", f"{supported(3 * result.rms, 3 * result.rms_error, _DIGITS)}{unit}"),
+        ("three times the rms", f"{supported(3 * result.rms, 3 * result.rms_error, _DIGITS)}{unit}"),
         ("root mean square of the input", f"{result.input_rms:.6g} {result.input.rpartition('[')[2][:-1]}"),
         ("largest density at", f"{result.frequencies[int(result.psd.argmax())]:.6g} Hz"),
-        ("stiffness varies by, left out", f"{parametric.stiffness_variation:.2g} (rms), relative"),
-        ("which would raise it by some", f"{parametric.rms_change:.2g}, relative"),
+        ("variation of stiffness, neglected", f"{parametric.stiffness_variation:.2g} (rms), relative"),
+        ("by which the root mean square would rise", f"about {parametric.rms_change:.2g}, relative"),
     ]
     speed = result.display_units.speed_unit().say(result.speed)
     note = f"By {result.provenance.method}; CSV has the density over frequency."

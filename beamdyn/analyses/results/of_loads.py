@@ -84,7 +84,10 @@ def _supported(value: float, error: float) -> str:
 
 
 def _load(quantity: str, head: str, values: np.ndarray, errors: np.ndarray, form: Any = _supported) -> Column:
-    """Make a column for a load, in the unit of tables."""
+    """Make a table column of a load in the unit in which tables show the `quantity`, such as MPa for stress.
+
+    `values` and `errors` are in SI units; ``form(value, error)`` formats a value.
+    """
     scale, unit = SHOWN[quantity]
     return Column(head, scale * values, unit, error=scale * errors, form=form)
 
@@ -113,7 +116,10 @@ def _largest_lines(result: Any, **window: float) -> list[Text]:
 
 
 def _lines(result: bd.SpanLoads, say: Callable[[str], str]) -> list[Text]:
-    """Return a sentence on each computed quantity, and, without strains, on the data that they need."""
+    """Return a sentence on each computed quantity, and on the data that strains need if these are missing.
+
+    ``say(quantity)`` makes the sentence.
+    """
     known = [name for name in _QUANTITIES if np.isfinite(result.values(name)).any()]
     lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
     return [*map(Text, (*map(say, reversed(known)), *lacking))]
@@ -188,7 +194,7 @@ def _say_expected(result: bd.RandomLoads, found: bd.LargestLoad) -> str:
     rate = _expected(float(result.crossings(name)[place]))
     return (
         f"Largest {name} expected ({what}): {value} {unit}, at {where}; constant {mean}, gravity {gravity}, "
-        f"rms {rms}, upwards through 0 {rate} times a second; with 99 % probability below {quantile}."
+        f"rms {rms}, crosses 0 upwards {rate} times a second; with 99 % probability below {quantile}."
     )
 
 

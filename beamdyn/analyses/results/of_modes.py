@@ -44,7 +44,10 @@ def said_of_model(result: Result, sentence: str) -> str:
 
 
 def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str = "") -> str:
-    """Return the sentence below a table over speeds: neglected effects, each at its worst speed."""
+    """Return the sentence below a table over speeds: the changes by neglected effects, where largest.
+
+    `what` is a noun for several values at one speed, such as "mode"; empty if there is one value.
+    """
     effects, speeds = result.left_out_effects, result.left_out_speeds
     return said_of_model(result, effects.sentence(what, where_worst(effects, speeds), speeds))
 
@@ -64,7 +67,7 @@ def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
 
 
 def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
-    """Return the note on how many of all speeds a table shows; empty if it shows all."""
+    """Return the note on how many of `every` speed a table shows (`shown`); empty if it shows all."""
     few = len(shown) < len(every)
     return f" ({len(shown)} of {len(every)} speeds; CSV and JSON have all)" if few else ""
 
@@ -79,7 +82,7 @@ def csv_directions(scene: bd.Scene) -> tuple[str, ...]:
 
 def modes_columns(result: bd.Modes) -> Columns:
     """Make columns of the modes: frequency, errors, growth rate, status, and how each deforms the beam."""
-    # Absolute errors in the unit of the eigenvalue [rad/s].
+    # `size` is the absolute error of each eigenvalue [rad/s], and so of the growth rate [1/s].
     size, rate = np.abs(result.eigenvalue) * result.error, result.growth_rate
     count, effects = len(size), result.left_out_effects
     model_errors = [_say_model_error(float(each), effects.lack_data) for each in effects.total]
@@ -100,7 +103,7 @@ def modes_columns(result: bd.Modes) -> Columns:
 
 
 def _circuit(result: bd.Modes | bd.Locus) -> str:
-    """Return whether the modes of a harvester are for open or short circuit; empty for other beams."""
+    """Return words on whether the modes of a harvester are for open or short circuit; "" for other beams."""
     electrodes = result.scene.beam.electrodes
     if electrodes is None:
         return ""
@@ -114,7 +117,10 @@ def _say_frequency(frequency: float, error: float) -> str:
 
 
 def _kinds(result: bd.Modes) -> Iterator[Column]:
-    """Yield columns of energy fractions in two planes, of which tables show one, and of kinds of modes."""
+    """Yield columns of each mode's energy fractions in two planes of bending, and of the kind of each mode.
+
+    Tables show only one of the two fractions.
+    """
     drawn, words = first_drawn(result.scene), words_of_directions(result.scene)
     for k, direction in enumerate(csv_directions(result.scene)):
         shown = f"share of {words[k]}" if k == drawn else None
@@ -174,9 +180,10 @@ def model_error_at(result: bd.Locus, indices: np.ndarray) -> np.ndarray:
 
 
 def _locus_cell(result: bd.Locus, size: np.ndarray, s: int, mode: int, model_error: float) -> Cell:
-    """Format the frequency of a mode at speed s, or, if it is unstable, its status and growth rate.
+    """Format the frequency of a mode at the speed with index s; of an unstable mode, status and growth rate.
 
-    Digits smaller than the model error [Hz] are dimmed.
+    `size` (speeds, modes) is the absolute error of the eigenvalues [rad/s].  Digits smaller than the model
+    error [Hz] are dimmed.
     """
     if result.status[s, mode] not in ("stable", "neutral"):
         return f"{result.status[s, mode]}, {result.growth_rate[s, mode]:+.3g} 1/s"
@@ -216,7 +223,7 @@ def locus_csv(result: bd.Locus) -> Columns:
 
 
 def critical_answer(result: bd.CriticalPoint) -> Group:
-    """Say the critical speed, or up to which speed there is none, and name neglected effects."""
+    """Make sentences on the critical speed, or how far there is certainly none, and on neglected effects."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
         said = Text(f"no critical speed: {in_files(result.reason)}")
@@ -266,7 +273,7 @@ def bounds_columns(result: bd.FrequencyBounds) -> Columns:
         Column("lower", result.lower, "Hz", form=lower_bound, words="at least"),
         Column("upper", result.upper, "Hz", form=upper_bound, words="at most"),
         Column("relative_width", result.width, form=".0e"),
-        title=f"Guaranteed bounds at {result.display_units.speed_unit().say(result.speed, 10)}, of the model",
+        title=f"Guaranteed bounds of the model at {result.display_units.speed_unit().say(result.speed, 10)}",
         note=f"{result.how[:1].upper()}{result.how[1:]}.",
     )
 
@@ -379,7 +386,7 @@ def rotor_table(result: bd.RotorDrawing) -> Group:
 
 
 def rotor_csv(result: bd.RotorDrawing) -> Columns:
-    """Make columns of the drawn beam edge in the plane of rotation, and of the thickness magnification."""
+    """Make columns of x and y [m] along the drawn beam's outline, and of the thickness magnification."""
     rows = ((x, y, result.magnification) for x, y in result.outline.tolist())
     return columns_of_rows((("x", "m"), ("y", "m"), "depth_magnification"), rows)
 

@@ -22,7 +22,7 @@ from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions, words_of_directions
 from beamdyn.scene.motion import RollingWheel
 
-_DIGITS = 6  # largest number of digits of a deflection, which has a modal truncation error
+_DIGITS = 6  # largest number of digits of a deflection: modal truncation errors exceed further digits
 # Relative error that is assumed for a deflection whose error is not estimated.
 _ASSUMED_ERROR = 5e-4
 _WHERE_COMPUTED = "model_error_where_computed"
@@ -51,7 +51,7 @@ def transient_table(run: bd.Transient, window: tuple[float, float] | None = None
     modes = f"modal truncation error {size}"
     if math.isnan(run.time_error):
         errors = (
-            "The time-integration error is not estimated: this integrator bounds that of single steps only. "
+            "The time-integration error is not estimated: this integrator bounds errors of single steps. "
             f"Estimated {modes}."
         )
     else:
@@ -65,7 +65,8 @@ def time_of_peak(
 ) -> tuple[float, float]:
     """Return the time [s] of the largest tip deflection in a window, and its error [s], a sampling step.
 
-    If the window contains fewer than two samples, return its centre and half its length.
+    The deflection is that in one `direction` (0: bending, 1: across), or the magnitude of both if None.  If
+    the window contains fewer than two samples, return its centre and half its length.
     """
     inside = np.flatnonzero((run.t >= start) & (run.t <= end))
     if len(inside) < 2:
@@ -76,7 +77,10 @@ def time_of_peak(
 
 
 def _peak_cells(run: bd.Transient, start: float, end: float, direction: int | None) -> tuple[Text, Text, str]:
-    """Make cells of the largest tip deflection in a window: deflection, ratio to the length, and time [s]."""
+    """Make cells of the largest tip deflection in a window: deflection, ratio to the length, and time [s].
+
+    The deflection is that in one `direction` (0: bending, 1: across), or the magnitude of both if None.
+    """
     size, per_si = run.peak(start, end, direction), run.display_units.length_unit().per_si
     error = _ASSUMED_ERROR * size if math.isnan(run.time_error) else run.time_error
     error += run.mode_error * run.largest if math.isfinite(run.mode_error) else 0.0
@@ -116,7 +120,10 @@ def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, p
 def _deflections(
     result: bd.SteadyResponse | bd.Sweep, error: np.ndarray, **sizes: np.ndarray
 ) -> Iterator[Column]:
-    """Yield columns of speeds and deflections; digits smaller than the model error are dimmed."""
+    """Yield columns of speeds and of deflections; digits smaller than the model error are dimmed.
+
+    `sizes` are the deflections [m] by the names of their columns, `error` is their absolute error [m].
+    """
     words = dict(zip(of_modes.csv_directions(result.scene), words_of_directions(result.scene), strict=True))
     yield Column("speed", result.speeds, "rad/s", form=".8g")
     beyond, form = of_modes.between_speeds(result, result.model_error), partial(supported, most=_DIGITS)
@@ -126,7 +133,10 @@ def _deflections(
 
 
 def _by_direction(result: bd.SteadyResponse | bd.Sweep, sizes: Iterable[np.ndarray]) -> dict[str, np.ndarray]:
-    """Return largest deflections in each direction by name in files; empty if only one is modelled."""
+    """Return the largest deflections `sizes` of each direction by their column names: "largest_bending".
+
+    The dictionary is empty if only one direction is modelled.
+    """
     return {
         f"largest_{name}": size
         for name, size in zip(of_modes.csv_directions(result.scene), sizes, strict=False)
@@ -230,7 +240,7 @@ def _velocity(result: bd.Harvest) -> Iterator[Column]:
 
 
 def _road_columns(result: bd.Harvest) -> tuple[Column, ...]:
-    """Make the columns for a random road; empty without a road."""
+    """Make the columns of mean power and rms values on the random road; empty if there is no such road."""
     if (road := result.road) is None:
         return ()
     of_rms = road.error / 2

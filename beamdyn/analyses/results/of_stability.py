@@ -33,7 +33,7 @@ def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
             Column("growth_rate", rate, "1/s", error=error, words="growth rate"),
             Column("growth_rate_error", error, "1/s", form=".1e", words="error"),
             title=f"{result.status}, by {result.provenance.method}",
-            note=f"The modes left out change it by {result.mode_error:.1g} 1/s.",
+            note=f"The modes left out change the growth rate by {result.mode_error:.1g} 1/s.",
         )
     size, value = np.abs(result.multipliers), result.multipliers
     errors = result.growth_rate_error, result.mode_error
@@ -45,8 +45,8 @@ def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
         Column("error", result.multiplier_errors, form=".1e"),
         Column("krein_sign", result.krein_sign.astype(int), words="Krein sign"),
         title=f"{result.status}: multipliers over {result.period:.6g} s, by {result.provenance.method}",
-        note=f"Largest growth rate {rate} 1/s, error {errors[0]:.1g} 1/s of the modes that are kept, "
-        f"{errors[1]:.1g} 1/s by those left out.",
+        note=f"Largest growth rate {rate} 1/s; its error: {errors[0]:.1g} 1/s for the modes that are kept, "
+        f"{errors[1]:.1g} 1/s by the modes left out.",
     )
 
 
@@ -77,7 +77,7 @@ def chart_table(result: bd.StabilityChart, units: Mapping[str, tuple[str, float]
 
 
 def _words(varied: VariedInput) -> str:
-    """Return the name of an input as in files and commands; within a form, as in the form."""
+    """Return the name of an input: its path as in files and commands, or its field's name in a form."""
     return in_files(InputName(varied.name))
 
 

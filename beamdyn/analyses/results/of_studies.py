@@ -61,7 +61,7 @@ def study_table(result: bd.Study) -> Group:
         what = "number" * (len(result.labels) > 1)
         notes.append(in_files(result.left_out_effects.sentence(what, where)))
     else:
-        notes.append("What the model leaves out is not computed: no design has an answer.")
+        notes.append("The neglected effects are not estimated, as no design has an answer.")
     made = Columns(
         *given,
         *columns[inputs:],
@@ -123,7 +123,7 @@ def sensitivities_table(result: bd.Sensitivities) -> Group:
         error = result.error * np.abs(numbers / result.value)
     parts = {
         f"Derivatives, by {result.provenance.method}": (result.derivative, result.error),
-        "Relative change over that of the input": (result.relative, error),
+        "Relative change per relative change of the input": (result.relative, error),
     }
     tables = [
         table(title, ("input", "value", *result.answers[shown]), _rows(result, *found, shown))
@@ -136,7 +136,10 @@ def sensitivities_table(result: bd.Sensitivities) -> Group:
 def _rows(
     result: bd.Sensitivities, value: np.ndarray, error: np.ndarray, shown: slice
 ) -> Iterator[Sequence[str]]:
-    """Yield a row for each input, with numbers for the results in the range `shown`."""
+    """Yield a table row for each input: name, value, and a number for each of the results that are `shown`.
+
+    `value` holds these numbers, `error` their absolute errors, both of shape (inputs, results).
+    """
     for each, numbers, errors in zip(result.inputs, value[:, shown], error[:, shown], strict=True):
         cells = map(supported, numbers, errors, [_DIGITS_OF_DERIVATIVES] * len(numbers))
         yield in_files(InputName(each.name)), f"{each.value:.6g} {each.unit}".rstrip(), *cells
@@ -176,7 +179,7 @@ def diagram_table(diagram: Diagram) -> Group:
     sentences = (
         f"Pareto front: {diagram.summary}.",
         f"Error: of {diagram.error_of}.",
-        f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} count as that.",
+        f"Reference: {diagram.reference}; errors below {diagram.resolved:.0e} are not resolved.",
         *(f"Left out: {sentence}." for sentence in diagram.skipped),
         "",
     )
@@ -223,7 +226,11 @@ def _scenes(result: bd.Campbell, labels: Sequence[str]) -> Column:
 
 
 def crossings_columns(result: bd.Campbell) -> Columns:
-    """Make columns of the crossings; tables show the energy fraction of the direction with solid curves."""
+    """Make columns of the crossings.
+
+    Of the energy fractions in both planes of bending, tables show that of the plane whose modes the diagram
+    draws as solid curves.
+    """
     found, number = result.crossings, len(result.crossings)
     speed, frequency, error = (
         np.array(attributes(found, name), dtype=float) for name in ("speed", "frequency", "error")
@@ -251,7 +258,10 @@ def crossings_columns(result: bd.Campbell) -> Columns:
 
 
 def _shares(result: bd.Campbell) -> Iterator[Column]:
-    """Yield columns of energy fractions of both planes; tables show that of modes with solid curves."""
+    """Yield the two columns of each mode's energy fractions in the two planes of bending.
+
+    Tables show only the fraction in the plane whose modes the diagram draws as solid curves.
+    """
     scenes = [result.loci[result.labels.index(c.label)].scene for c in result.crossings]
     cells = [
         f"{c.plane_share[first_drawn(scene)]:.3f}" if scene.physics.planes == 2 else "-"
@@ -293,12 +303,15 @@ def _bounds(result: bd.Campbell) -> Iterator[Columns]:
             Column("at least", (), "Hz", cells=np.where(known, [*map(lower_bound, low)], "-").tolist()),
             Column("at most", high, "Hz", form=upper_bound),
             Column("relative width", (), cells=np.where(known, np.char.mod("%.0e", width), "-").tolist()),
-            title=f"Guaranteed bounds at {result.display_units.speed_unit().say(each[0][1])}, of the model",
+            title=f"Guaranteed bounds of the model at {result.display_units.speed_unit().say(each[0][1])}",
         )
 
 
 def _name_below(result: bd.Campbell, label: str, speed: float, high: float) -> str:
-    """Return the name of the mode whose frequency at a speed is close to an upper bound; "-" if none is."""
+    """Return the name of the mode whose frequency at a speed is close to the upper bound `high` [Hz].
+
+    The mode is one of the scene with the name `label`; the result is "-" if none is close.
+    """
     i = result.labels.index(label)
     locus = result.loci[i]
     distance = np.abs(locus.frequency[np.abs(locus.speeds - speed).argmin()] / high - 1)

@@ -26,7 +26,7 @@ FAR = 18.0  # distance of a label from its anchor above which a line (leader) co
 _STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])
 _TURNS = 12  # number of directions around an anchor
 _TURNED = 9.0  # cost of a direction at right angles to the preferred one [pt]
-_NEXT = 5.0  # cost of using a label's second anchor instead of the first, and so on [pt]
+_NEXT = 5.0  # additional cost of each further anchor of a label, from the second one on [pt]
 _COVERED = 120.0  # cost of a candidate place that lines of the drawing cover completely [pt]
 _FIRST = 40  # number of cheapest candidate places of a label that are tried first
 _TRIED = 30  # number of a label's candidate places for which the program tries to move another label away
@@ -55,7 +55,7 @@ class LabelRequest:
 
 
 class Place(NamedTuple):
-    """A placed label: centre (2,), anchor (2,), distance of its box from it, and cost of the place [pt]."""
+    """A placed label: centre (2,), anchor (2,), distance between box and anchor, cost of the place [pt]."""
 
     centre: np.ndarray
     anchor: np.ndarray
@@ -223,7 +223,11 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
 
 
 def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
-    """Select one label's free candidates, the cheapest first, from the candidates of all labels."""
+    """Select one label's free candidates, the cheapest first, from the candidates of all labels.
+
+    The slice `part` selects the label's anchors; `free` (anchors of all labels, candidates) says which are
+    free.
+    """
     which = np.flatnonzero(free[part])
     cost = every.costs[part].ravel()[which]
     order = np.argsort(cost, kind="stable")

@@ -161,9 +161,10 @@ def arrange(drawing: Drawing, frame: Frame, fit: Fit | None = None) -> Layout:
 
 
 def follow(drawing: Drawing, frame: Frame, before: Layout) -> Layout:
-    """Lay out a slightly changed drawing at its earlier scale, with each label at its earlier offset.
+    """Lay out a slightly changed drawing at the scale of its earlier layout `before`.
 
-    If a label would then cover another label, a symbol or the frame, all labels are placed again.
+    Each label keeps its offset.  If a label would then cover another label, a symbol or the frame, all labels
+    are placed again.
     """
     if len(before.places) == len(drawing.labels):
         requests = [_request(label, before.fit) for label in drawing.labels]
@@ -184,7 +185,11 @@ def _inner(drawing: Drawing, frame: Frame) -> Frame:
 def _composed(
     drawing: Drawing, frame: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> Layout:
-    """Make a layout from the places of a drawing's labels; its scale may shrink unless `held` is given."""
+    """Make a layout from the places of a drawing's labels.
+
+    The drawing is made smaller than `fit` if that is needed to list labels without a place below it; the
+    transformation `held`, if given, is kept.
+    """
     inner = _inner(drawing, frame)
     numbered, texts, rules, fit = _with_list(drawing, inner, fit, places, held)
     key_texts, key_rules = _key(drawing, frame, fit, inner[3])
@@ -206,7 +211,10 @@ def _request(label: Label, fit: Fit) -> LabelRequest:
 
 
 def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
-    """Return the lines that labels should not cover, and the points that they must not cover."""
+    """Return the lines of a drawing that labels should not cover, and the points that they must not cover.
+
+    Labels must stand in the part `inner` of the frame; `fit` is the transformation to paper.
+    """
     segments, points = [np.empty((0, 4))], [np.empty((0, 2))]
     for shape in drawing.shapes:
         along = fit.to_paper(points_of_shape(shape))
@@ -242,7 +250,12 @@ def _obstacles(drawing: Drawing, inner: Frame, fit: Fit) -> Obstacles:
 def _with_list(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[tuple[str, ...], list[Text], list[Rule], Fit]:
-    """Return the labels without a free place, which are listed below, texts, leader lines, and the scale."""
+    """Return the labels that are listed below the drawing, all texts, leader lines, and the scale.
+
+    Labels without a free place are listed; numbers mark their points.  The texts are those of labels in the
+    drawing and of the list.  `inner` is the frame without title and key; the other arguments are as for
+    `_composed`.
+    """
     listed, bottom, fit, places = _make_room(drawing, inner, fit, places, held)
     numbers = {i: f"({number})" for number, i in enumerate(listed, 1)}
     texts, rules = [], []
@@ -264,8 +277,9 @@ def _with_list(
 def _make_room(
     drawing: Drawing, inner: Frame, fit: Fit, places: Sequence[Place | None], held: Fit | None
 ) -> tuple[list[int], float, Fit, Sequence[Place | None]]:
-    """Shrink the drawing, unless `held` is given, until a list of labels without a place fits below it.
+    """Shrink the drawing until a list of labels without a place fits below it.
 
+    A given transformation `held` is kept: the drawing then does not shrink.
     In the smaller drawing more labels may lack a free place: the steps are repeated until all such labels
     are listed.  Returns the indices of these labels, the top of the list [pt], the scale, and all places.
     """
@@ -288,7 +302,10 @@ def _make_room(
 
 
 def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:
-    """Break the list of labels into lines; at most half the frame's height is used."""
+    """Break the list of labels, whose texts are `said`, into lines; use at most half the frame's height.
+
+    `inner` is the frame [pt], `size` the font size [pt].
+    """
     words = "; ".join(f"({i}) {text}" for i, text in enumerate((s.replace("\n", ", ") for s in said), 1))
     lines = wrapped(words, inner[2] - inner[0] - 2 * _EDGE - _PADDING[0], size)
     most = max(1, int((inner[3] - inner[1]) / 2 / (size * LINE_HEIGHT)))
@@ -296,7 +313,10 @@ def _list_lines(said: Sequence[str], inner: Frame, size: float) -> list[str]:
 
 
 def _rows(lines: Sequence[str], left: float, top: float, size: float, role: str) -> Iterator[Text]:
-    """Yield lines of text below one another, aligned at the left."""
+    """Yield lines of text below one another, aligned at `left`, from `top` down [pt].
+
+    `size` is the font size [pt]; `role` determines the colour.
+    """
     for i, line in enumerate(lines):
         width, height = text_size(line, size)
         middle = np.array([left + width / 2, top + height * (i + 0.5)])
@@ -359,7 +379,10 @@ def length_text(size: float) -> str:
 
 
 def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tuple[float, _KeyItem]]]:
-    """Break the key into lines of entries, each entry with its distance from the left edge."""
+    """Break the key into lines of entries that fit into the frame, each with its distance from the left edge.
+
+    The `scale` [pt per unit of the drawing] determines the lengths of scale bars.
+    """
     room = frame[2] - frame[0] - 2 * _EDGE
     lines: list[list[tuple[float, _KeyItem]]] = []
     at = np.inf
@@ -374,7 +397,7 @@ def _lines_of_key(drawing: Drawing, frame: Frame, scale: float) -> list[list[tup
 
 
 def _key(drawing: Drawing, frame: Frame, fit: Fit, top: float) -> tuple[list[Text], list[Rule]]:
-    """Make texts and lines of the key below the drawing: meanings of colours, and scale bars."""
+    """Make texts and lines of the key, from the height `top` [pt] down: colours with meanings, scale bars."""
     texts, rules = [], []
     height = _SMALL * LINE_HEIGHT + 3
     for row, line in enumerate(_lines_of_key(drawing, frame, fit.scale)):

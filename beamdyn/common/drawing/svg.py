@@ -67,7 +67,10 @@ def _grip(name: str, point: str, at: Any, fit: Fit) -> str:
 
 
 def page_colours(selector: str, dark: bool = False) -> str:
-    """Return CSS rules that set the colours of all drawings below a CSS selector."""
+    """Return CSS rules that set the colours of all drawings below a CSS selector.
+
+    The colours are those for a light background, or for a `dark` one.
+    """
     inks = strokes.INKS.items()
     values = [(role, (i.dark_line, i.dark_area) if dark else (i.line, i.area)) for role, i in inks]
     variables = "".join(f"--{role}:{line};--{role}-area:{area};" for role, (line, area) in values)

@@ -252,7 +252,7 @@ class VaryOptions:
 
     @property
     def combine(self) -> Literal["product", "zip"]:
-        """Return "product" if inputs are combined each with each, "zip" if taken together."""
+        """Return "product" for all combinations of the inputs' values, "zip" if n-th values go together."""
         return "zip" if self.together else "product"
 
     @property
@@ -266,7 +266,7 @@ class VaryOptions:
         """Raise an error for options that have no effect unless an input is varied."""
         for name in ("together", "workers", "store"):
             if not self.vary and getattr(self, name) != getattr(NOTHING_VARIED, name):
-                raise ValueError(f"--{name} goes with {OPTION}: there is one design only")
+                raise ValueError(f"--{name} goes with {OPTION}: without it there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
         """Return the object that computes all designs in processes, and stores results; see `TaskRunner`."""

@@ -90,12 +90,15 @@ class MissingValue(InvalidValue):
     """Raised for a missing value that is required; the message names the field and what to give."""
 
     def worded(self, word: Callable[[Part], str]) -> str:
-        """Return the message; the function `word` words each of its parts for Python, files or forms."""
+        """Return the message; the function `word` formats each of its parts for Python, files or forms."""
         return f"{self.field}: missing; {worded(self.bound, word)}"
 
 
 class CoreSection(Section):
-    """A table of a file that describes an object of the package; errors of that are errors of the table."""
+    """A table of a file that describes an object of the package.
+
+    The object is made when the table is validated, so that an error raised by it is a mistake of the table.
+    """
 
     @cached_property
     def core(self) -> Any:
@@ -232,7 +235,11 @@ def _missing_table(path: str, known: Sequence[Input]) -> str:
 
 
 def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: Any) -> tuple[str, str]:
-    """Return the sentence on an invalid value, with key and value of the file, and the path of the input."""
+    """Return the sentence on an invalid value, with key and value of the file, and the path of the input.
+
+    `place` and `path` are the path of the value with and without list indices, `reason` is the error that the
+    check raised, and `given` the value in the file.
+    """
     if isinstance(reason, InvalidInput) and not reason.field:
         return say(replace(reason, field=place)), path
     if key := path_of(reason, [entry.path for entry in describe(model)], path):
@@ -243,7 +250,7 @@ def _refusal(model: type[BaseModel], place: str, path: str, reason: Any, given: 
 
 
 def _place_in(field: str, key: str) -> str:
-    """Return the path `key` of an input, extended by what `field` has in addition, such as ".values[1]"."""
+    """Return the path `key` of an input, extended by the further part of `field`, such as ".values[1]"."""
     parts = (field.removeprefix(name) for name in wholes_of(field) if f".{key}".endswith(f".{name}"))
     if (part := next(parts, None)) is not None:
         return key + part
@@ -338,7 +345,7 @@ class MadeSection(CoreSection):
 
     @property
     def given(self) -> dict[str, Any]:
-        """Return the values of the table as arguments for the class of the package."""
+        """Return the values of the table as arguments, by name, for the class that it describes."""
         given: dict[str, Any] = {}
         for name, key in self.key_of.items():
             value, (argument, pair, _) = getattr(self, key), name.partition("[")
@@ -443,7 +450,7 @@ def _arguments(made: Callable[..., Any]) -> dict[str, Any]:
 
 
 def _key(name: str, hint: Any) -> str:
-    """Return the key of an argument: the described one, else its name ("tip_x", "tip_y" for a pair)."""
+    """Return the key of an argument in files: as in its `Described`, else its name ("tip_x" for "tip[0]")."""
     described = description(hint)
     return described.key if described and described.key else name.replace("[0]", "_x").replace("[1]", "_y")
 

@@ -39,7 +39,10 @@ _LINE: ContextVar[_ProgressLine | None] = ContextVar("line", default=None)
 
 
 class Pace:
-    """Estimates the remaining time from steps in the last half of the elapsed time, as steps may speed up."""
+    """Estimates the remaining time from the steps done in the last half of the elapsed time.
+
+    Earlier steps are disregarded, as they may have been slower.
+    """
 
     def __init__(self) -> None:
         self._times: list[float] = []
@@ -306,7 +309,10 @@ class FittedTable(Table):
         return whole if self.columns[i].no_wrap else min(whole, _WORDS)
 
     def _part(self, places: Sequence[int], needed: Sequence[int], numbered: bool) -> Table:
-        """Make a table from some of the columns, with row numbers in front if `numbered`."""
+        """Make a table from the columns with indices `places`, with row numbers in front if `numbered`.
+
+        `needed` contains the width of every column, to which headings are broken.
+        """
         made = Table(box=self.box, padding=self.padding)
         if numbered:
             made.add_column("", justify="right", no_wrap=True)

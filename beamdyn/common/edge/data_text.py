@@ -51,7 +51,7 @@ class DataText:
         return ConfigError(str(self.path), [f"line {line}: {sentence}"])
 
     def lacking(self, sentence: str) -> ConfigError:
-        """Return an error that the file ends without some required content."""
+        """Return an error that the file ends too early; `sentence` names the content that it lacks."""
         return self.refusal(len(self.lines), f"the file ends here, {sentence}")
 
     def is_comment(self, line: int) -> bool:
@@ -370,7 +370,7 @@ def read_csv(
             raise text.refusal(head_line, f"{same} is the same column as {first}; give one")
     if len(rest) < least_rows:
         count = {1: "a row", 2: "two rows"}.get(least_rows, f"{least_rows} rows")
-        raise text.lacking(f"expected {count} of numbers at least below the headings")
+        raise text.lacking(f"expected at least {count} of numbers below the headings")
     cells = [_row_of_cells(text, line, _cells(text, line, delimiter), heads) for line in rest]
     rows = [_read_row(text, line, each, heads, may_lack) for line, each in zip(rest, cells, strict=True)]
     columns = zip(heads, zip(*rows, strict=True), zip(*cells, strict=True), strict=True)
@@ -482,7 +482,7 @@ def check_places(table: CsvTable, name: str) -> None:
                 f"it repeats line {before}; expected each position once, or twice with a jump in a property"
             )
         elif k in (1, last) or x[k] == x[k - 2]:
-            said = f"{here} stands in line {before}, too; expected a jump to stand between other stations"
+            said = f"{here} stands in line {before}, too; expected it twice only between other positions"
         else:
             continue
         raise table.text.refusal(table.lines[k], said)

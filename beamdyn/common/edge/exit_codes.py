@@ -76,7 +76,7 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
     app : App
         The program.
     arguments : sequence of str, optional
-        As on the command line, without the program's name; those of the process if not given.
+        Words as on the command line, without the program's name; by default those in `sys.argv`.
 
     Returns
     -------
@@ -116,7 +116,8 @@ def run(app: App, arguments: Sequence[str] | None = None) -> int:
 @contextmanager
 def _terminated_as_interrupted() -> Iterator[None]:
     """In this context, let SIGTERM (a request to terminate, as from a scheduler) act like Ctrl-C."""
-    if threading.current_thread() is not threading.main_thread():  # Python allows signal handlers only there
+    # Python lets only the main thread set signal handlers.
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
 
@@ -150,7 +151,7 @@ def _as_sentences(name: str) -> Iterator[None]:
 
 
 def _complain(name: str, sentence: str, code: int) -> int:
-    """Print an error message on standard error, if possible, and return the exit code."""
+    """Print an error message of the program `name` on standard error, if possible; return the exit code."""
     if sys.stderr is not None:
         with suppress(OSError), quiet():
             print(f"{name}: {sentence}", file=sys.stderr, flush=True)

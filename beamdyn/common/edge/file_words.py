@@ -51,7 +51,8 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
     elif isinstance(error, UnusedCliTokensError) and error.unused_tokens:
         said = _say_too_many(error.unused_tokens, given)
     elif isinstance(error, CoercionError) and error.target_type in _KINDS and error.token and not error.msg:
-        option = error.token.keyword  # the oldest supported cyclopts omits the text given to a flag
+        # The typed value is also searched in `given`: the oldest supported cyclopts omits that of a flag.
+        option = error.token.keyword
         joined = next((text.partition("=")[2] for text in given if text.startswith(f"{option}=")), "")
         wanted = _KINDS[error.target_type]
         said = f'Invalid value for {option}: "{error.token.value or joined}" is not {wanted}.'
@@ -67,7 +68,7 @@ def check_names(given: Sequence[str]) -> None:
 
 
 def _say_too_many(words: Sequence[str], given: Sequence[str]) -> str:
-    """Return a sentence on words that belong to no option; often a blank stands before a unit."""
+    """Return a sentence on words that belong to no option, such as "mm" of the unquoted value 50 mm."""
     first = next((i for i, word in enumerate(given) if word == words[0]), 0)
     option, value = given[first - 2 : first] if first > 1 else ("", "")
     example = f' as in {option} "{value} {words[0]}"' if option.startswith("--") and "=" not in option else ""
@@ -120,7 +121,7 @@ def say(error: Exception) -> str:
 
 @contextmanager
 def on_form(heading: Callable[[str], str]) -> Iterator[None]:
-    """In this context, word messages for a form; `heading` returns the heading of a table in the form."""
+    """In this context, reword messages for a form; ``heading(table)`` is a table's heading in the form."""
     before = _HEADING.set(heading)
     try:
         yield

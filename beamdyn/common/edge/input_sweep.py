@@ -305,7 +305,9 @@ def one_by_one(
     designs, run = designs_of(axes, combine), run or TaskRunner()
     results, refusals = np.full((len(outputs), designs.count), np.nan), dict[int, str]()
     names = tuple(output.name for output in outputs)
-    sent = []  # without the classes of tables: a class that is made while a file is read cannot be pickled
+    # Inputs are sent to processes without the class of their table, which may be made while a file is read:
+    # such a class cannot be pickled.
+    sent = []
     for axis in axes:
         entry = replace(axis.input, section=Section)
         if isinstance(entry, Coordinate):
@@ -354,7 +356,8 @@ def placed(tables: Mapping[str, Any], axes: Sequence[Axis], values: Sequence[flo
         axis.input.path: f"{value:.15g} {axis.unit}" if axis.unit else float(value)
         for axis, value in zip(axes, values, strict=True)
     }
-    missing: dict[str, Any] = {}  # points with one varied coordinate, filled up with defaults
+    # Default points for inputs of which only one coordinate is varied, and which the file does not give.
+    missing: dict[str, Any] = {}
     for axis in axes:
         if isinstance(axis.input, Coordinate):
             of, there = axis.input.of, part_at(tables, axis.input.of.path)

@@ -273,7 +273,10 @@ def _cell(cell: object) -> str:
 
 
 def _row(cells: Sequence[str], words: Sequence[bool], tag: str) -> str:
-    """Write a row in HTML; `words` says which cells hold words, of which long ones may wrap."""
+    """Write a table row in HTML, with cells of the `tag` td or th.
+
+    `words` says which cells hold words: long ones may wrap.  Other cells hold numbers.
+    """
 
     def kind(cell: str) -> str:
         return "words sentence" if len(cell) > _SENTENCE else "words bar" if cell[:1] == _BAR else "words"

@@ -44,7 +44,7 @@ def report_verdicts(compare: Callable[[Console, Path], Sequence[Any]], folder: P
     if unexpected:
         raise NoAnswer(f"{unexpected} of {len(checked)} verdicts are not as expected; see the tables")
     screen.print(
-        f"\nAll {len(checked)} verdicts are as expected: agreement, but for what is explained above."
+        f"\nAll {len(checked)} verdicts are as expected: agreement, or a difference with the reason above."
     )
     return screen
 

@@ -43,15 +43,15 @@ def headline(result: Spread, answer: int) -> str:
     parts = [f"{result.answers[k]}: {_number(nominal, _numerical(result, k)(nominal))}{unit}"]
     worst = f"{low} to {high}{unit}"
     if scatter.no_answer[k]:
-        none = f"no answer at worst, in {percent(scatter.no_answer[k])} of the random designs"
-        parts.append(f"{none}, of the others {worst}")
+        none = f"no answer at worst (in {percent(scatter.no_answer[k])} of the random designs)"
+        parts.append(f"{none}, else {worst}")
     else:
         parts.append(f"{worst} at worst")
     parts.append(f"standard deviation {_number(*_deviation(result, k))}{unit}")
     names = result.matters_most(k) if len(result.inputs) > 1 else ()
     if len(names) > 1:
-        alike = f"are not told apart by {result.samples} samples"
-        parts.append(f"{' and '.join(names)} matter most, and {alike}")
+        alike = f"{result.samples} samples do not show which of them more"
+        parts.append(f"{' and '.join(names)} matter most, but {alike}")
     elif names:
         row = int(result.indices.total[:, k].argmax())
         share = _share(result.indices.total[row, k], result.indices.total_error[row, k])
@@ -159,19 +159,19 @@ def _inputs(result: Spread) -> Iterator[Group]:
 def _note(result: Spread) -> str:
     """Return the note on the number of designs, the digits, and the sources of slopes and worst cases."""
     is_normal = any(isinstance(each.distribution, Normal) for each in result.inputs)
-    normal = ", of normal ones three standard deviations either way" if is_normal else ""
+    normal = ", a normal one within three standard deviations" if is_normal else ""
     first, told = result.first_order, _told(result)
     exact = np.all((first.exact | ~np.isfinite(first.slope))[:, told], axis=1).tolist()
     others = [each.name for each, known in zip(result.inputs, exact, strict=True) if not known]
-    slopes = f"derivatives, but by {', '.join(others)} from designs about it" if others else "derivatives"
+    slopes = f"derivatives; for {', '.join(others)}, from designs near it" if others else "derivatives"
     if others and not first.exact[:, told].any():
-        slopes = "designs about it"
+        slopes = "designs near it"
     said = (
         f"{result.designs} random designs, {result.worst.designs} for worst cases.",
         "Numbers have only the digits that their errors support.",
         f"First order: slopes at the nominal design, from {slopes}.",
-        f"Worst: within the ends of all tolerances{normal};",
-        f"at corners as far as {result.samples} pairs of designs show.",
+        f"Worst cases: each input within the ends of its tolerance{normal}.",
+        f"Corners (all inputs at an end) are the worst as far as {result.samples} pairs of designs show.",
     )
     return " ".join(said)
 

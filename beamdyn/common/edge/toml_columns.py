@@ -65,7 +65,11 @@ def read_columns(place: str, rows: Any, known: Mapping[str, Quantity]) -> dict[s
 
 
 def _similar(name: str, known: Iterable[str]) -> list[str]:
-    """Find the most similar known name, if any; other digits are another quantity, if not just swapped."""
+    """Return a list with the known name that is most similar to a given name; empty if none is similar.
+
+    A known name that differs only in the digits at its end, such as EI1 from EI2, is another quantity and is
+    returned only if the last two digits are swapped.
+    """
     letters, swapped = name.rstrip("0123456789"), re.sub(r"(\d)(\d)$", r"\2\1", name)
     others = [
         each for each in known if each == swapped or not letters or each.rstrip("0123456789") != letters
@@ -74,7 +78,10 @@ def _similar(name: str, known: Iterable[str]) -> list[str]:
 
 
 def _read_head(place: str, head: Any, known: Mapping[str, Quantity]) -> tuple[str, str]:
-    """Read the name and the unit of a column from its heading."""
+    """Read the name of the quantity and the unit of a column from its heading.
+
+    Raise `InvalidInput` with the position `place` if the quantity is not `known`, or its unit is wrong.
+    """
     match = _HEAD.fullmatch(head) if isinstance(head, str) else None
     name = match[1] if match else ""
     if match is None or name not in known:

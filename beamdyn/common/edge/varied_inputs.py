@@ -137,7 +137,10 @@ def parse_axis(inputs: Sequence[Input], text: str, option: str = "--vary", most:
 
 
 def _in_si(entry: Input, number: str, unit: str, words: str) -> float:
-    """Convert a value to SI units, and check it against the bounds of the input."""
+    """Convert a value to SI units, and check it against the bounds of the input `entry`.
+
+    An error message begins with `words`, the option as it was given.
+    """
     quantity = entry.quantity
     given = f"{number} {unit}".strip() if quantity.unit or unit else float(number)
     try:
@@ -165,7 +168,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     """
     matches = [i for i in inputs if key in (i.path, i.name)]
     if all(i.required or i.default is None for i in matches):
-        # A required input takes precedence over inputs that default to it, as those of a brake's second shoe.
+        # A required input takes precedence over inputs that default to it, such as those of a second shoe.
         matches = [i for i in matches if i.required] or matches
     if len(matches) > 1:
         raise ValueError(f"{words}: {key} is ambiguous; give {' or '.join(i.path for i in matches)}")
@@ -173,13 +176,16 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     if not matches:
         raise ValueError(f"{words}: {unknown(key, [i.path for i in numbers], [i.name for i in numbers])}")
     if choices := matches[0].choices:
-        says = f"it is a choice ({', '.join(map(str, choices))}): give each a file; numbers are"
+        says = f"it is a choice ({', '.join(map(str, choices))}), no number: give each a file; numbers are"
         raise ValueError(f"{words}: {matches[0].path}: {says} {', '.join(i.path for i in numbers)}")
     return matches[0]
 
 
 def unknown(key: str, names: Sequence[str], more: Sequence[str] = ()) -> str:
-    """Describe an unknown name, and suggest the most similar of all names; if none is, list `names`."""
+    """Describe the unknown name `key`, and suggest the most similar of `names` and `more`.
+
+    If none is similar, list `names`.
+    """
     near = difflib.get_close_matches(key, [*names, *more], n=1)
     advice = f"did you mean {near[0]}?" if near else f"known are {', '.join(names)}"
     return f"unknown name {key!r}; {advice}"

@@ -33,7 +33,7 @@ _WIDTH = 120  # width of a table as text, in characters
 _NOT_SHOWN = ("provenance", "warnings")
 _DEEPEST = 1  # largest nesting depth of objects in a result whose fields are shown
 
-Rows = Iterable[Sequence[object]]  # rows of a table, the first with headings; `Columns` yield these, too
+Rows = Iterable[Sequence[object]]  # rows of a table, the first with headings; `Columns` is such an iterable
 
 
 @dataclass(frozen=True)

@@ -184,7 +184,7 @@ def with_parts(whole: Any, parts: Mapping[str, Any]) -> Any:
 
 
 class _Tree(dict[Any, Any]):
-    """New values of an object's parts: by key or index a value, or a tree of those within."""
+    """New values of an object's parts, by key or index; for parts of a part, another tree of new values."""
 
 
 def _steps(path: str) -> list[str | int]:
@@ -283,7 +283,7 @@ class Designs:
     inputs : sequence of VariedInput
         The inputs.
     combine : {"product", "zip"}
-        Whether each value is combined with each of the other inputs, or the first values of all inputs make
+        Whether each value is combined with all values of other inputs, or the first values of all inputs make
         a design, the second values another, and so on.
     """
 
@@ -318,9 +318,9 @@ class Designs:
             If the number of indices differs from the number of axes, or an index is out of range.
         """
         if len(place) != len(self.shape):
-            raise ValueError(f"place {place}: give {len(self.shape)} indices, one for each of {self.shape}")
+            raise ValueError(f"place {place}: give one index per axis of the shape {self.shape}")
         if any(not -length <= i < length for i, length in zip(place, self.shape, strict=True)):
-            raise ValueError(f"place {place}: it is outside {self.shape}, where indices begin at 0")
+            raise ValueError(f"place {place}: it is outside the shape {self.shape}; indices begin at 0")
         places = place * len(self.inputs) if self.combine == "zip" else place
         return {each.name: float(each.values[i]) for each, i in zip(self.inputs, places, strict=True)}
 

@@ -54,7 +54,7 @@ class Store:
             content = [p.name for p in self.path.iterdir() if not p.name.startswith(ASIDE)]
             if content and self._marked(content) != self.kind:
                 raise ValueError(
-                    f"store = {str(self.path)!r} holds something else than a {self.kind} "
+                    f"store = {str(self.path)!r} holds something other than a {self.kind} "
                     f"({min(content)!r}, for instance); {_REMEDY}"
                 )
             write_text(self.path / _MARKER, json.dumps({"kind": self.kind}))
@@ -109,7 +109,7 @@ Solve = Callable[[Any], Any]
 Keep = Callable[[Any, Any], None]
 # Most tasks submitted to an executor at once: enough to keep its workers busy without filling the memory.
 _IN_FLIGHT = 256
-# Most tasks submitted at once for each worker process; tasks that have not begun can be withdrawn.
+# Most tasks submitted at once for each worker process; this process takes back some that have not begun.
 _PER_WORKER = 8
 
 
@@ -226,7 +226,7 @@ class TaskRunner:
             raise InvalidValue("store", self.store, "the name is empty", 'give a folder, such as "store"')
         if self.progress is not None:
             parts = self.interrupted.parts
-            function("progress", self.progress, f"it takes the numbers of finished {parts} and of all")
+            function("progress", self.progress, f"it takes the number of finished {parts} and of all")
 
     def open_store(self) -> Store | None:
         """Return the store, and open it at the first call; None if there is no store."""

@@ -149,7 +149,11 @@ def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> f
 def _draw_lines(
     ax: Axes, factor: float, lines: Mapping[str, float], ends: np.ndarray, top: float
 ) -> tuple[list[_CurveName], int]:
-    """Draw the excitation lines; return labels at the right edge, and the number of label rows above."""
+    """Draw the excitation lines, and label those that leave the axes through their upper edge.
+
+    Return the labels for the right edge, and the number of rows of labels above the axes.  `factor` converts
+    speeds from rad/s to the unit of the x axis; `ends` are the first and the last speed [rad/s].
+    """
     at_right, above = [], []
     for name, multiple in lines.items():
         per_rev = _PER_REV.fullmatch(name)
@@ -172,9 +176,10 @@ def _draw_lines(
 
 
 def _draw_modes(ax: Axes, factor: float, scenes: Sequence[Curves], top: float) -> Iterator[_CurveName]:
-    """Draw the curves of the modes, and yield their labels.
+    """Draw the curves of the modes, and yield their labels for the right edge of the axes.
 
-    A curve that ends before the right edge is labelled at its start.
+    A curve that ends before the right edge is labelled at its start.  `factor` converts speeds from rad/s to
+    the unit of the x axis; `top` is the upper limit of the frequency axis [Hz].
     """
     for k, curves in enumerate(scenes):
         kinds = np.zeros(curves.frequency.shape, int) if curves.kinds is None else curves.kinds

@@ -339,7 +339,10 @@ def plot_work_precision(
     from matplotlib.ticker import LogFormatterSciNotation
 
     class FewLabels(LogFormatterSciNotation):
-        """Labels minor ticks 2 and 6 times powers of ten; all if the axis limits have a ratio below 3."""
+        """Formatter of minor ticks: labels those at 2 and 6 times powers of ten, or all on a short axis.
+
+        An axis is short if the ratio of its limits is at most 3.
+        """
 
         def __call__(self, x: float, pos: int | None = None) -> str:
             assert self.axis is not None

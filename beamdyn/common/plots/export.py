@@ -196,7 +196,7 @@ def _strip(x: np.ndarray, width: float | np.ndarray | Sequence[float] | None, ro
     import meshio
 
     if len(x) < 2:
-        raise ValueError(f"x has {len(x)} position: a mesh needs at least two")
+        raise ValueError(f"x has the length {len(x)}: a mesh needs at least two positions")
     full = np.asarray(_DRAWN_RATIO * (x[-1] - x[0]) if width is None else width, dtype=float)
     if full.shape not in ((), x.shape) or not (np.isfinite(full) & (full >= 0)).all():
         remedy = f"give a width of 0 or more [m], or one for each of {len(x)} positions"
@@ -227,7 +227,7 @@ def _check_history(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     x, t, deflection = ascending("x", x), ascending("t", t), np.asarray(deflection, dtype=float)
     if deflection.ndim != 2 + over_width or deflection.shape[:2] != (len(t), len(x)):
-        expected = f"{len(t)} times and {len(x)} positions expected"
+        expected = f"expected {len(t)} x {len(x)}, times by positions"
         raise ValueError(f"deflection has shape {deflection.shape}: {expected}")
     if not np.isfinite(deflection).all():
         raise ValueError("deflection: every value must be finite")
@@ -242,13 +242,13 @@ def _check_shapes(
     aside = np.zeros(shapes.shape[:2]) if across is None else np.asarray(across)
     for name, values, places in ("shapes", shapes, shapes.shape[2:]), ("across", aside, ()):
         if np.iscomplexobj(values) or not np.isfinite(values).all():
-            remedy = "of a complex mode give the real part"
+            remedy = "give the real part of a complex mode"
             raise ValueError(f"{name}: deflections must be real and finite; {remedy}")
         if values.shape != (len(labels), len(x), *places):
-            expected = f"{len(labels)} labels times {len(x)} positions expected"
+            expected = f"expected {len(labels)} x {len(x)}, labels by positions"
             raise ValueError(f"{name} has shape {values.shape}: {expected}")
     if len(set(labels)) < len(labels):
-        raise ValueError(f"labels {list(labels)}: two are alike; a mode's field needs a name of its own")
+        raise ValueError(f"labels {list(labels)}: two are equal; give each mode another name")
     return shapes, aside
 
 

@@ -124,10 +124,10 @@ _LEVELS = 8  # largest number of contour lines
 _DECADES = 1.5  # range of values in decades, above which contour levels are at equal ratios
 # If an input has values at equal ratios: least ratio of the largest to the smallest value for a log axis.
 _LOGARITHMIC = 10.0
-# Ratio of the largest to the smallest value from which a log axis has numbers at decades alone.
+# Ratio of the largest to the smallest value from which a log axis has numbers only at powers of ten.
 _MANY_DECADES = 1000.0
 _DIGITS = 4
-_TICKS = 6  # most steps between the numbers below a map, which may be long
+_TICKS = 6  # largest number of intervals between ticks below a map: their numbers may be long
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
 # The hatched region without results ends where the fraction of missing results, smoothed, is 1/2.
 _SMOOTHED = 1.0  # standard deviation of the Gaussian that smooths the fraction [grid steps]
@@ -401,7 +401,7 @@ def _label_path(labels: PlacedLabels, text: str, paths: Sequence[np.ndarray], **
 def _draw_meeting(
     ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, distance: np.ndarray, name: str
 ) -> None:
-    """Draw the contour line on which a difference (ny, nx) is zero, with a name."""
+    """Draw and name the line on which the difference `distance` (ny, nx) of result and comparison is zero."""
     known = distance[np.isfinite(distance)]
     if known.size and known.min() < 0 < known.max():
         drawn = ax.contour(x, y, distance, [0.0], colors=_MEETS, linestyles="--", linewidths=1.8, zorder=3)

@@ -140,7 +140,7 @@ def spanned(values: np.ndarray | Sequence[float], unit: str = "") -> str:
 
 
 def counted(count: int, word: str, many: str = "") -> str:
-    """Format a count with its noun: "1 mode", "3 modes"."""
+    """Format a count with its noun: "1 mode", "3 modes"; `many` is the plural if it does not just add s."""
     return f"{count} {word if count == 1 else many or word + 's'}"
 
 
@@ -156,7 +156,8 @@ def error_at_most(error: Any, unit: str = "") -> str:
     return f"error <= {rounded_up(largest)}{unit and ' ' + unit}"
 
 
-_ROUNDED = 1 - 1e-12  # so that a rounding error does not turn 5e-8 into 6e-8
+# Factor on a number before it is rounded up, so that its rounding error does not turn 5e-8 into 6e-8.
+_ROUNDED = 1 - 1e-12
 
 
 def rounded_up(value: float) -> str:

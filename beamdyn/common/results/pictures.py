@@ -168,7 +168,7 @@ def _marks(ax: Axes) -> Iterator[Artist]:
 
 
 def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
-    """Put a label before the legend entries of the curves drawn last, and change colours used before.
+    """Put a label before the legend entries of the marks not in `before`, and change colours used before.
 
     The colours are shifted in `COLOURS` by the number of used colours; or replaced by unused colours if the
     list is too short for the shift.

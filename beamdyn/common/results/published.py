@@ -25,7 +25,7 @@ def load(package: str, name: str) -> dict[str, Any]:
     Raises
     ------
     ValueError
-        If there is no such file; the message lists the existing ones.
+        If there is no such file; the message lists the names that exist.
     """
     known = available(package)
     if name not in known:

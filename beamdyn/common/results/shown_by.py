@@ -2,5 +2,5 @@
 
 from __future__ import annotations
 
-SHOWN_BY: dict[str, str] = {}  # the module with `VIEWS` for each package of results
+SHOWN_BY: dict[str, str] = {}  # by package of results: the module whose `VIEWS` say how to show them
 MEDIA: list[str] = []  # its last entry names the module that makes texts, data frames and HTML of any result

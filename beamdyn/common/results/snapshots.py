@@ -109,7 +109,8 @@ def nullified(value: Any) -> Any:
 
 _ADDED = "added"
 ADDED_LATER = {_ADDED: True}  # metadata of fields that older files lack; loading sets them to their defaults
-# Packages whose classes a saved file may name; `fingerprint` ignores their fields that equality ignores.
+# Packages whose classes a saved file may name.  In objects of these classes, `fingerprint` ignores the fields
+# that do not affect equality.
 _PACKAGES = ("beamdyn", "brakes")
 
 

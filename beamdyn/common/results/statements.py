@@ -241,7 +241,10 @@ def _announcing(analysis: Callable[Arguments, Answer], remedy: str) -> Callable[
 
 
 def announce(sentences: tuple[str, ...], remedy: str = _REMEDY) -> None:
-    """Issue statements that a result is outside linear theory as Python warnings, at the caller's caller."""
+    """Issue statements that a result is outside linear theory as Python warnings.
+
+    The warnings name the line that called the analysis: two calls above this one.
+    """
     if not _within_another.get():
         for sentence in of_kind(sentences, OUTSIDE):
             warnings.warn(f"{sentence}{remedy}", OutsideLinearTheory, stacklevel=3)

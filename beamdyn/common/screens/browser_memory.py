@@ -44,7 +44,10 @@ def _are_texts(values: Iterable[object]) -> bool:
 
 
 def refused_name(name: str, present: Mapping[str, object]) -> str:
-    """Return the reason why a design cannot be stored under a name; empty if it can."""
+    """Return the reason why a design cannot be stored under a name; empty if it can.
+
+    `present` contains the designs that are stored already, by name.
+    """
     if not name.strip():
         return "give the design a name"
     if len(name) > _LONGEST:

@@ -17,10 +17,11 @@ _MOST_DIGITS = 10  # most digits of the values of a curve that varies little
 _WIDE = 0.15  # fraction of the axis below which a band is too narrow for its text
 # Colours of curves, used in turn.
 _COLOURS = ("normal", "friction", "reaction", "chart-4", "chart-5", "chart-6")
-# Colours used by charts but not by drawings, for a light background; the page sets those for dark.
+# Colours used by charts but not by drawings: on a light background, and on a dark one.
 _MORE = {"chart-4": "#a3527f", "chart-5": "#806000", "chart-6": "#6a35c9"}
 _MORE_DARK = {"chart-4": "#e59ac2", "chart-5": "#f5d76e", "chart-6": "#a98bff"}
-# How the chart component rounds the tick step: leading digits below the second number become the first.
+# Pairs (a, b) by which the chart component rounds tick steps: a step of s times a power of ten, 1 <= s < 10,
+# becomes a times this power, for the first pair with s < b.
 _STEPS = ((1, 1.5), (2, 2.5), (3, 4.0), (5, 7.0), (10, math.inf))
 _POWERS = "(x) => (x >= 1e-3 && x < 1e5) ? String(x) : x.toExponential(0).replace('+', '')"
 _FEW = 8  # largest number of decades of an axis for which minor ticks are drawn
@@ -56,7 +57,10 @@ def thinned(x: np.ndarray, y: np.ndarray, most: int) -> tuple[np.ndarray, np.nda
 
 
 def chart_colours(selector: str, dark: bool = False) -> str:
-    """Return CSS rules for the colours of charts that do not occur in drawings."""
+    """Return CSS rules that set those colours of charts that drawings do not use.
+
+    The rules are for the elements of a CSS `selector`, on a light or a `dark` background.
+    """
     values = _MORE_DARK if dark else _MORE
     return f"{selector}{{{''.join(f'--{role}:{colour};' for role, colour in values.items())}}}"
 
@@ -132,7 +136,11 @@ def _letters(size: int) -> dict[str, Any]:
 
 
 def _axis(axis: ChartAxis, values: Sequence[Any], upright: bool) -> dict[str, Any]:
-    """Make the options of an axis; a logarithmic axis has labels at powers of ten unless they overlap."""
+    """Make the options of an axis; the y axis is `upright`.
+
+    A logarithmic axis, whose limits follow from the `values` on it if none are given, has labels at powers of
+    ten unless they overlap.
+    """
     line = {"lineStyle": {"color": _paint("axis")}}
     label: dict[str, Any] = _letters(_PALE) | {"hideOverlap": True}
     tick: dict[str, Any] = {"show": True} | line

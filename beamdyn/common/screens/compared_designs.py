@@ -140,7 +140,10 @@ def _rows(table: Table) -> Iterator[_TableRow]:
 
 
 def differences_html(differences: Sequence[Difference], what: str, other: str) -> str:
-    """Return an HTML table of differences, up to a largest number; a sentence if there are none."""
+    """Return an HTML table of the differences, at most 60; a sentence if there are none.
+
+    `what` says what differs, such as inputs; `other` is the name of the other design.
+    """
     if not differences:
         return f"<p>The {escape(what)} are the same.</p>"
     rows = "".join(

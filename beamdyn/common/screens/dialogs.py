@@ -102,7 +102,7 @@ class DesignsDialog:
     ) -> None:
         """Show named designs and examples; only designs for the screens of `document` can be compared.
 
-        An example opens on these screens if they read the same kind of file as those of the example.
+        An example opens on the screens of `document` if they can read its file; else on its own screens.
         """
         self._said.set_text("")
         self._list.clear()
