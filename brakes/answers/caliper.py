@@ -54,7 +54,7 @@ from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.system import OppositeTravelError, join_names
 
-_STROKE = "Travels [mm], forces of the pads over the finger's, velocity of the left pad over the right pad's"
+_STROKE = "Travels [mm], pad force / finger force, velocity of the left pad / velocity of the right pad"
 _AT_STOPS = 11  # number of positions of the screen's slider over the stroke
 _STROKE_HEADS = (
     *("cable", "finger", "right pad", "left pad"),
@@ -74,10 +74,10 @@ _OUTPUTS = (
     *(
         Output(key, words, lambda a, key=key: getattr(a.friction, key) if a.friction else np.nan, unit)
         for key, words, unit in (
-            ("squeeze", "share of the pad force that friction leaves, squeezing", ""),
-            ("release", "share of the cable tension that friction holds, releasing", ""),
-            ("squeezing_tension", "tension of the cable for the same forces of the pads, squeezing", "N"),
-            ("releasing_tension", "tension of the cable for the same forces of the pads, releasing", "N"),
+            ("squeeze", "efficiency, squeezing: cable tension without friction / with friction", ""),
+            ("release", "releasing: cable tension with friction / without friction", ""),
+            ("squeezing_tension", "cable tension with friction, squeezing, for unchanged pad forces", "N"),
+            ("releasing_tension", "cable tension with friction, releasing, for unchanged pad forces", "N"),
         )
     ),
     Output("stopping_distance", "stopping distance", lambda a: a.stop.distance if a.stop else np.nan, "m"),
@@ -86,7 +86,9 @@ _OUTPUTS = (
 
 @dataclass(frozen=True)
 class CaliperAnswer(planar.PlanarAnswer):
-    """A caliper over its stroke and at its end, with friction, wear and a stop if the file has them.
+    """Results of a caliper over its stroke and at the end of the stroke.
+
+    Friction, wear and a stop are included if the file has them.
 
     Attributes
     ----------
@@ -107,7 +109,7 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @classmethod
     def of(cls, caliper: Caliper, design: CaliperInput | MechanismInput) -> CaliperAnswer:
-        """Move a caliper over its stroke; add friction and wear only if statics determines the forces."""
+        """Solve a caliper over its stroke; add friction and wear only if statics determines the forces."""
         given = design.run
         run = caliper.stroke(given.travel, given.points, given.finger)
         end = float(run.cable[-1])
@@ -125,12 +127,15 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @property
     def status(self) -> str:
-        """Status: whether statics determines the forces, and the pads press; see `planar.Equilibrium`."""
+        """Status as in `planar.Equilibrium`: whether statics determines the forces and both pads press."""
         return self.run.status
 
     @property
     def message(self) -> str:
-        """The status as a sentence, with the travel above which a pad would have to pull."""
+        """The status as a sentence.
+
+        If a pad would have to pull, the sentence begins with the travel of the cable from which this is so.
+        """
         pulls = (self.run.pad_force <= 0).any(axis=1)
         if not pulls.any():
             return self.run.message
@@ -211,7 +216,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         if (w := self.wear) is not None:
             shown += [
                 f"Pads worn by {1e3 * lost:g} mm touch at {1e3 * finger:.3f} mm of finger travel; "
-                f"pad/finger there {right:.4f} right, {left:.4f} left."
+                f"force of the pad / of the finger there: {right:.4f} right, {left:.4f} left."
                 for lost, finger, (right, left) in zip(w.lost, w.finger, w.advantage, strict=True)
             ]
         if self.stop is not None:
@@ -233,7 +238,7 @@ class CaliperAnswer(planar.PlanarAnswer):
             for key, value in vars(Stance()).items()
             if key not in given
         )
-        return f"; of a usual bicycle, as [stop] does not give them: {said}" if said else ""
+        return f"; values of a usual bicycle, which [stop] does not give: {said}" if said else ""
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:
@@ -356,7 +361,8 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         Raises
         ------
         NoAnswer
-            If it cannot be assembled, does not reach the end of its stroke, or its mobility is not 1.
+            If the mechanism cannot be assembled, does not reach the end of its stroke, or does not have the
+            mobility 1.
         ValueError
             If the numbers are out of range.
         """
@@ -383,7 +389,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
                 raise NoAnswer(say(error)) from None
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
-        """Return words and names of three loads for the top of the screen, first those that are not given."""
+        """Return words and names of three loads for the top of the screen, the unknown loads first."""
         if not isinstance(answer, MechanismAnswer):
             return super()._first(answer, outputs)
         mechanism = answer.equilibrium.position.mechanism

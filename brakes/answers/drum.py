@@ -114,7 +114,7 @@ class DrumType(RubbingType[DrumInput]):
         return DrumAnswer(design, design.solve()).stop_again()
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form."""
+        """Make drawings that explain the symbols of the input form."""
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:

@@ -183,7 +183,7 @@ class ForkliftAnswer(Answer):
                 ]
                 for event, stage in zip(done.events, (done.right, done.left, done.drum), strict=True)
             ]
-            least = "rank and smallest singular value of the mechanism's constraints, least over the motion"
+            least = "least rank and least relative singular value of the constraints during the motion"
             heads_of_events = ("stage", "event", "rank", "smallest singular value")
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
             tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
@@ -319,7 +319,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # locked wheels may need less than the linings' friction
+            if chained is not None:  # friction is a result: locked wheels may need less than the linings have
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(
@@ -350,8 +350,8 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     model = ForkliftInput
     together = (
         "[truck] and [stop] are for the vehicle, [brake] for the kinematics, [forces] with [brake] or "
-        "[levers] for the forces; [pedal] with [line] goes with all of them, [drums] with these, [heat] "
-        "with [drums]."
+        "[levers] for the forces; [pedal] and [line] need the tables of all three, [drums] needs [pedal], "
+        "[heat] needs [drums]."
     )
     sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums", "heat")
     example_sweep = "stop.speed=10:30:21 km/h"
@@ -359,7 +359,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     sketches: Callable[[], Rows] = staticmethod(tuple)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form."""
+        """Make drawings that explain the symbols of the input form."""
         return self.sketches()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:

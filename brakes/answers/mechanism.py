@@ -31,7 +31,8 @@ WITHOUT = "without friction"
 def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
     """Describe the outputs of a mechanism: loads and travels at the end of the stroke, largest joint forces.
 
-    With friction there are also the unknown loads, squeezing and releasing.
+    Each unknown load has two further outputs, while squeezing and while releasing, which are nan without
+    friction.
     """
     loads, rubbing = [], []
     for load in mechanism.loads:
@@ -134,7 +135,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         if self.friction is not None:
             return (*found, *map(in_files, self.friction.refusals))
         if self._mechanism.friction and self.last.is_determined:
-            return (*found, f"friction acts against one motion; the mobility is {self.equilibrium.mobility}")
+            return (*found, f"friction needs mobility 1; here the mobility is {self.equilibrium.mobility}")
         return found
 
     @property
@@ -263,7 +264,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         drawn = drawings.open_and_closed(self.equilibrium.position, now, "\n".join((title, *captions)))
         if now.status == "self-locking":
             drawn = drawings.with_lock(drawn, now, self._mechanism.unknown_loads[-1].name)
-        points = getattr(self.design, "points", {})  # files have points; a named caliper has dimensions
+        points = getattr(self.design, "points", {})  # a named caliper has dimensions, not points
         return drawings.with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:

@@ -142,9 +142,10 @@ class MechanismFriction(Result):
         return self.over or self.drawn
 
     def locking(self, answered: bool) -> list[str]:
-        """Return a sentence on each direction of motion whose forces statics does not determine.
+        """Return a sentence on each direction of motion whose status is not "determined".
 
-        If `answered`, these are the directions whose forces are possible nevertheless, else all others.
+        If `answered`, only directions with possible forces are included, as of a self-locking mechanism; else
+        only directions without possible forces.
         """
         return [
             Words(name, ": ", way.message)
@@ -159,7 +160,7 @@ class MechanismFriction(Result):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Sentences on self-locking directions of motion, and on joints that jam at the smallest offset."""
+        """Sentences on self-locking directions of motion, and on joints that jam if a load is offset."""
         said = self.last.without.warnings
         jams = (warning for _, way in self._moving(self.last) for warning in way.warnings)
         return [*self.locking(answered=True), *dict.fromkeys(each for each in jams if each not in said)]

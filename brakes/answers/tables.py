@@ -35,7 +35,10 @@ def take(name: str, words: str, unit: str = "") -> Output:
 
 
 def take_fields(kind: type, names: str) -> tuple[Output, ...]:
-    """Make outputs of a result's fields, named in one text with spaces; `Meaning` gives the words."""
+    """Make outputs of some fields of a result class, with the words and units of each field's `Meaning`.
+
+    `names` has the names of the fields, separated by spaces.
+    """
     each = ((name, meanings(kind)[name]) for name in names.split())
     return tuple(take(name, stated.words, stated.shown or stated.unit) for name, stated in each)
 
@@ -46,7 +49,7 @@ def resultant(vector: np.ndarray) -> np.ndarray:
 
 
 def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Output, ...]:
-    """Turn outputs of a result into outputs of an object with this result, which `part(object)` returns."""
+    """Turn outputs of a part of an object into outputs of the object; `part(object)` returns the part."""
     return tuple(
         Output(o.name, o.words, lambda answer, o=o: o.of(part(answer)), o.unit, o.scale) for o in outputs
     )
@@ -55,7 +58,10 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
 def take_from_each(
     parts: Callable[[Any], Sequence[Any]], count: int, kind: str, outputs: Iterable[Output]
 ) -> tuple[Output, ...]:
-    """Turn outputs of one part, such as a shoe, into outputs of the numbered parts of a result."""
+    """Turn outputs of a part, such as a shoe, into outputs of each of the `count` parts of an object.
+
+    ``parts(object)`` returns the parts; `kind` is the word for a part.
+    """
     return tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, {kind} {i + 1}", o.of, o.unit, o.scale)
         for i in range(count)

@@ -99,7 +99,7 @@ def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
         headline=lambda answer: [*brake.headline(answer)],
         sketch=brake.sketch,
         branches=lambda answer: answer.branches(),
-        effort="It takes longer with more positions of the stroke, and with friction in more joints.",
+        effort="The solution takes longer with more positions of the stroke and more joints with friction.",
     )
 
 
@@ -154,7 +154,7 @@ def check_caliper(text: str, source: str) -> CaliperInput:
     """Parse the file of a named caliper; raises `ConfigError` if it describes another mechanism."""
     design = parse_mechanism(text, source)
     if not isinstance(design, CaliperInput):
-        raise ConfigError(source, ["caliper: missing; a mechanism of parts has a screen of its own"])
+        raise ConfigError(source, ["caliper: missing; a mechanism of bodies has a screen of its own"])
     return design
 
 

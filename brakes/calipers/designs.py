@@ -75,7 +75,7 @@ class Design:
 
 @dataclass(frozen=True, kw_only=True)
 class EeBrake(Design):
-    """The eeBrake, reconstructed: two levers on the panel, which a strut and a link keep in step.
+    """The eeBrake, reconstructed: two levers, which a strut and a link keep in step, on a fixed panel.
 
     Parameters
     ----------

@@ -108,7 +108,8 @@ class Asked:
     finding : FindOptions
         The input that is sought.
     what : str, optional
-        Results with --vary or --spread, separated by commas; without these, the --csv file lists all names.
+        Results to show with --vary or --spread, separated by commas; the --csv file of a run without these
+        options lists the names of all results.
     """
 
     varying: VaryOptions = NOTHING_VARIED
@@ -165,14 +166,15 @@ def run_command(
     outputs : Outputs
         Files to write.
     further : mapping, optional
-        Further options that name a file to write: its path, if given, and the function that writes it.
+        Further files to write, by the name of the option: the file's path, if the option is given, and the
+        function that writes it.
     **options
         Options of the command that the HTML report repeats.
 
     Raises
     ------
     NoAnswer
-        If the model has no answer; what there is has been shown.
+        If the model has no answer; it is raised after the available results have been shown.
     ValueError
         For bad input.
     """
@@ -270,8 +272,9 @@ def caliper(
 ) -> None:
     """Forces, travels and mechanical advantage of a caliper.
 
-    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
-    statics does not determine and which contacts open, and then ends with code 1.
+    With friction, there are three sets of forces: without friction, while squeezing, and while releasing. The
+    command says which bodies are loose, which reactions statics does not determine and which contacts open,
+    and then ends with code 1.
 
     Parameters
     ----------
@@ -283,7 +286,7 @@ def caliper(
     animation
         Write an animation of the stroke: .gif.
     asked
-        What is asked of many designs.
+        Options that ask about many designs: variations, tolerances, or an inverse question.
     list_
         List the named calipers and their dimensions; needs no MECHANISM.
     outputs
@@ -322,8 +325,9 @@ def mechanism(
 ) -> None:
     """Every force in a planar mechanism of bodies, joints and loads, as drawn and over a stroke.
 
-    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
-    statics does not determine and which contacts open, and then ends with code 1.
+    With friction, there are three sets of forces: without friction, while squeezing, and while releasing. The
+    command says which bodies are loose, which reactions statics does not determine and which contacts open,
+    and then ends with code 1.
 
     Parameters
     ----------
@@ -334,7 +338,7 @@ def mechanism(
     animation
         Write an animation of the stroke: .gif.
     asked
-        What is asked of many designs.
+        Options that ask about many designs: variations, tolerances, or an inverse question.
     outputs
         Files to write.
     """
@@ -378,7 +382,7 @@ def forklift(
     stage
         Stage to show; the stages before it are computed if they are needed.
     asked
-        What is asked of many designs.
+        Options that ask about many designs: variations, tolerances, or an inverse question.
     outputs
         Files to write.
     """
@@ -411,7 +415,7 @@ def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))
 def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
-    """Published numbers of brakes beside ours, consequences of the papers' errors, and the pictures.
+    """Published numbers of brakes beside computed ones, consequences of the papers' errors, and pictures.
 
     Parameters
     ----------
@@ -451,7 +455,7 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
         file
             The TOML file that describes the brake; `brakes keys` lists its keys.
         asked
-            What is asked of many designs.
+            Options that ask about many designs: variations, tolerances, or an inverse question.
         outputs
             Files to write.
         """

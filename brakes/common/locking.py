@@ -60,7 +60,7 @@ class RubbingResult(SlidesOrLocks):
     c_star, c_star_slope : ndarray
         Brake factor torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Friction at self-locking, margin to this, and whether the brake locks.
+        Friction at self-locking; the margin 1 - friction / locking_friction; whether the brake locks.
     """
 
     friction: Numbers

@@ -59,7 +59,7 @@ def forklift_from_dict(data: Mapping[str, Any], source: str = "forklift") -> For
 class DuoServoInput(MadeSection):
     """Table [brake] of a file: geometry of a duo-servo brake's right side at rest; the left is its mirror."""
 
-    if TYPE_CHECKING:  # `DuoServo.move_shoes` describes this input
+    if TYPE_CHECKING:  # a field made from the argument of `DuoServo.move_shoes`
         clearance: float
 
     @property

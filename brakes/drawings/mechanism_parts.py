@@ -21,7 +21,10 @@ class Member(NamedTuple):
 
 
 class OuterForce(NamedTuple):
-    """External force: name, point (2,) [m], components (2,) [N]; is it a reaction, is it along a bar."""
+    """External force: name, point (2,) [m], components (2,) [N], and two flags.
+
+    `reaction` tells whether the ground exerts the force, `along_bar` whether it acts along a bar.
+    """
 
     name: str
     at: np.ndarray

@@ -128,7 +128,8 @@ class BrakeResult(RubbingResult):
     c_star, c_star_slope : ndarray
         Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Of the shoe that locks first: locking friction, margin to this, and whether the shoe locks.
+        Of the shoe that locks first: locking friction, margin 1 - friction / locking friction, and whether
+        the shoe locks.
 
     Examples
     --------
@@ -272,9 +273,11 @@ def shoe_torque(
 
     Notes
     -----
-    With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
-    sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
-    d = r K - b S - c C; torque = mu A p0 r K.
+    Angles are measured from the line where the pressure vanishes, and (b, -c) is the pin in axes turned to
+    this line. The pressure is p0 times the sine of the angle. With s = -1 for the leading shoe, +1 for the
+    trailing, A = width r, and the integrals K, S, C of sin, sin^2, sin cos over the arc, the moment of P
+    about the pin is A p0 (n + s mu d), n = c S - b C, d = r K - b S - c C, and the torque is mu A p0 r K. A
+    uniform pressure is p0, with the integrals of 1, sin, cos.
 
     References
     ----------

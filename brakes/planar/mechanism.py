@@ -350,7 +350,7 @@ def solve_at_sum(system: System, a: Node, b: Node, weight: np.ndarray, target: f
 def solve_at_arc_lengths(system: System, nodes: list[Node], target: np.ndarray) -> np.ndarray:
     """Find coordinates (one row each) at given arc lengths along the curve from the first node."""
     half = np.array([_angle(a, b) / 2 for a, b in pairwise(nodes)])
-    # Between the nodes the curve is approximated by circles.
+    # Between the nodes the curve is approximated by circular arcs.
     arc = np.append(0.0, np.cumsum(_chords(nodes) / np.sinc(half / np.pi)))
     segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(nodes) - 2)
     return close_joints(system, *_between(nodes, segment, (target - arc[segment]) / np.diff(arc)[segment]))

@@ -82,7 +82,7 @@ def check_inputs(core: object, prefix: str = "") -> None:
 
 @cache
 def _wanted(core: type) -> list[tuple[str, Any, bool, bool, Described]]:
-    """List each described input of a dataclass: name, type, is it a list, may it be None.
+    """List each described input of a dataclass: name, type, whether it is a list, whether it may be None.
 
     Cached, as studies make thousands of instances of each class.
     """

@@ -76,7 +76,7 @@ def table_1(arc: np.ndarray | None = None) -> Table1:
 
 
 def table_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Compute the effective arm [m] that reproduces Table 1, at arcs [rad]; (12) gives 11.9 % less."""
+    """Compute the effective arm [m] of Table 1 at arcs [rad]; the paper's equation (12) gives 11.9 % less."""
     return _R * 0.87 * (np.cos(0.5236) - np.cos(_START + np.asarray(arc))) / 1.1485
 
 

@@ -55,8 +55,8 @@ Tables = dict[tuple[str, str], np.ndarray]  # columns by table and quantity, e.g
 class PrintedStop(Stop):
     """A stop by the paper's equations, in which an axle can lift; with the right equations it cannot.
 
-    If one does, the status is ``"front wheel lifts"`` or ``"rear wheel lifts"``. It is never ``"stops in the
-    rise time"``: the paper begins the last phase with the full speed.
+    If an axle lifts, the status is ``"front wheel lifts"`` or ``"rear wheel lifts"``. It is never ``"stops in
+    the rise time"``: the paper begins the last phase with the full speed.
     """
 
     @property
@@ -226,7 +226,7 @@ def errata() -> tuple[Erratum, ...]:
     unladen = [solve(*base_case(load_mass=0.0)).acceleration for solve in (stop_as_printed, stop)]
     truck, conditions, torque = right.truck, right.conditions, right.torque_per_brake
     mu, y, r1 = conditions.friction, truck.cg[1], truck.front_wheel_radius
-    # If the moments about the axle omit the brake torque, the arm is y_cg.
+    # Torque by the paper over the right torque: its moments omit the brake torque, so that the arm is y_cg.
     ratio = (truck.wheelbase + mu * (y + r1)) / (truck.wheelbase + mu * y)
     missing = 1 - paper["reproduction"]["factor"]["value"]
     slower = right.acceleration - missing * (conditions.gravity * np.sin(conditions.slope))
@@ -286,7 +286,7 @@ class NewtonResult(Result):
     def message(self) -> str:
         """One sentence that describes the outcome of the iteration."""
         if not self.converged:
-            return f"no convergence within {self.iterations} steps: try another start, or the reduction"
+            return f"no convergence within {self.iterations} steps: try another start, or internal_forces"
         mirrored = "" if self.physical else " to a mirror image: friction against the drum's motion"
         return f"converged{mirrored}"
 

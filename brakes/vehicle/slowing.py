@@ -153,7 +153,7 @@ class Slowing(Result):
         held = self.ratio * np.cos(self.road.slope) * risen
         rolls = (a.heading == "uphill") & (held < np.sin(self.road.slope) * (1 - _EDGE))
         many = f", in {np.sum(rolls)} of {rolls.size} cases" if rolls.ndim else ""
-        said = "it stands before its brakes hold it, and rolls back until they do: that is not counted"
+        said = "it stands before its brakes hold it, and rolls back until they do; the rolling is not counted"
         return (f"{said}{many}",) if np.any(rolls) else ()
 
     @property
