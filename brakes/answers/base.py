@@ -81,7 +81,7 @@ class Answer(Result, ABC):
         return ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return the reasons why designs have no result, by index; `count` designs were solved together."""
+        """Return the reason why a design has no result, by its index; `count` is the number of designs."""
         return {}
 
     def loadable(self) -> Result | None:

@@ -1,4 +1,4 @@
-"""Results of bicycle calipers, and the types of brakes for named calipers and for mechanisms."""
+"""Results of bicycle calipers, and the types of brakes `MechanismType` and `CaliperType`."""
 
 from __future__ import annotations
 
@@ -238,7 +238,7 @@ class CaliperAnswer(planar.PlanarAnswer):
             for key, value in vars(Stance()).items()
             if key not in given
         )
-        return f"; values of a usual bicycle, which [stop] does not give: {said}" if said else ""
+        return f"; values of a usual bicycle, as [stop] does not give them: {said}" if said else ""
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:
@@ -272,12 +272,18 @@ class CaliperAnswer(planar.PlanarAnswer):
         return self.run.to_dict() | {key: value and value.to_dict() for key, value in more.items()}
 
     def figure(self, place: float | None = None) -> Figure:
-        """Draw the caliper open and, with forces, at a fraction of the stroke (0 to 1), beside its curves."""
+        """Draw the caliper at a fraction of the stroke (0 to 1), and beside it the curves over the stroke.
+
+        The drawing also has the open caliper in grey, and the forces.
+        """
         cable, closed = self._closed_at(1.0 if place is None else place)
         return caliper_figure(self.caliper, self.run, closed, cable, self._caption(cable))
 
     def drawings(self, place: float) -> Rows:
-        """Make the drawing of the caliper open and, with forces, at a fraction of the stroke from 0 to 1."""
+        """Make the drawing of the caliper at a fraction of the stroke (0 to 1), with its forces.
+
+        The open caliper is drawn in grey.
+        """
         cable, closed = self._closed_at(place)
         title = "\n".join(filter(None, (title_of(self.caliper, self.run, cable), self._caption(cable))))
         return ((caliper_drawing(self.caliper, closed, title),),)
@@ -298,7 +304,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         return float(np.interp(place, (0.0, 1.0), self.run.cable[[0, -1]]))
 
     def _caption(self, cable: float) -> str:
-        """State the cable tensions with friction, for the end of the stroke; empty elsewhere."""
+        """State the cable tensions with friction if `cable` is the end of the stroke; else an empty text."""
         return self._tensions(self.friction) if self.friction and cable == self.run.cable[-1] else ""
 
 

@@ -118,7 +118,10 @@ class _Designs:
 
 
 def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float, float, str]:
-    """Parse RESULT = VALUE: the output, its wanted value, half of the value's last digit, and its text."""
+    """Parse a text RESULT = VALUE.
+
+    Return the output, its wanted value, half a unit of the value's last digit, and the value's text.
+    """
     name, equals, amount = (part.strip() for part in text.partition("="))
     output, *more = chosen(outputs, name if equals else re.split(r"[^\w.]", name)[0], SO_THAT)
     form = f'give RESULT = VALUE, such as "{output.name} = {f"1 {output.unit}".rstrip()}"'

@@ -209,7 +209,7 @@ class MechanismFriction(Result):
             yield f"{load.name}: {', '.join(said)}"
 
     def locked(self) -> dict[str, np.ndarray]:
-        """Mark where over the stroke the mechanism locks, by the name of each curve on which it does.
+        """Return masks of the positions of the stroke at which the mechanism locks, by the name of the curve.
 
         Locking means that it jams, so that there is no force, or that the unknown load must reverse.
         """

@@ -81,7 +81,7 @@ class RubbingAnswer(Answer):
         return type(self).solver(brake or result.brake, **given | changed)
 
     def stop_again(self) -> Answer:
-        """Add the repeated stops of the file to the results, if it has any and the brake does not lock."""
+        """Return this answer with the file's repeated stops, if it has any and the brake does not lock."""
         if self.design.heat is None or np.all(self.result.locked):
             return self
         duty, result = self.design.heat.core, self.result

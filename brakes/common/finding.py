@@ -379,7 +379,7 @@ def _solve(
             )
             (jumps if jumped else found).append(root)
         found += ends
-    # The ends of ranges are uncertain by `near`.
+    # Solutions within level ranges, whose ends are uncertain by `near`, are left out.
     alone, near = np.unique(found), 2 * _EDGE * np.abs(ranges)
     low, high = (ranges + near * np.array([-1, 1])).T[..., None]
     return alone[~np.any((alone >= low) & (alone <= high), axis=0)], np.unique(jumps)
