@@ -200,7 +200,7 @@ class CaliperAnswer(planar.PlanarAnswer):
             f"{run.caliper}: {run.finger_force:g} N on the hand lever, lever ratio {run.lever_ratio:g}, "
             f"{run.tension:g} N in the cable",
             table(_STROKE, _STROKE_HEADS, rows),
-            planar.reactions_table(self.equilibrium, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
+            planar.reactions_table(self.equilibrium, f"Forces at cable travel {1e3 * run.cable[-1]:.4g} mm"),
             f"Over the whole stroke the finger travels {run.finger[-1] / pads if pads > 0 else np.nan:.4f} "
             "times as far as both pads together.",
         ]
@@ -317,7 +317,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     name = "mechanism"
     title = "Mechanism"
     method = "equilibrium of rigid bodies in a plane, solved by singular values; friction by Newton's method"
-    error_from = "rounding of the drawing and residual, both over the equations' smallest singular value"
+    error_from = "rounding and residual of the equations, both divided by their smallest singular value"
     purpose = "Any planar mechanism of bodies, joints and loads: every force, as drawn and over a stroke."
     sections = ("", "points", "run", "caliper", "stop")
     needs = ("title", "bodies", *PARTS, *sections[1:])
@@ -354,7 +354,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return mechanism_from_dict(tables, source)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Reduce the stroke to the positions at which the slider stops, and leave out worn pads."""
+        """Return tables with a stroke of only the positions at which the slider stops, without worn pads."""
         run = dict(tables.get("run", {}))
         points = run.get("points", _AT_STOPS)
         run["points"] = min(points, _AT_STOPS) if isinstance(points, int) else points
@@ -451,7 +451,10 @@ class CaliperType(MechanismType):
     slider = Slider("stroke", ("open", "closed"), step=0.1)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Reduce the stroke to the positions at which the slider stops; leave out friction and worn pads."""
+        """Return tables with a stroke of only the positions at which the slider stops.
+
+        Friction and worn pads are left out.
+        """
         coarse = super().coarser(tables)
         friction = {"friction": 0.0} if "friction" in coarse["run"] else {}
         return {**coarse, "run": {**coarse["run"], **friction}}
@@ -461,7 +464,7 @@ class CaliperType(MechanismType):
         return caliper_sketch(entries.get("caliper", "").strip())
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
-        """Read the caliper that tables describe; without a name, the message lists the names."""
+        """Read the named caliper that tables describe; without a name, an error lists the known names."""
         return super().read({"caliper": ""} | dict(tables), source)
 
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:

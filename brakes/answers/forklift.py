@@ -267,7 +267,7 @@ class ForkliftAnswer(Answer):
         return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Make handles of the truck, or of the brake, if only one of them is shown."""
+        """Make the handles of the truck if only the truck is shown, of the brake if only the brake is."""
         if self.stages == ("vehicle",) and self.stop is not None:
             return truck_handles(self.stop)
         if self.stages == ("kinematics",) and self.motion is not None:

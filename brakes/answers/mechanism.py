@@ -142,7 +142,7 @@ class MechanismAnswer(planar.PlanarAnswer):
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
         said = [*self.last.warnings]
-        if self.motion is not None:  # warns of toggle positions and unsuitable inputs of joints
+        if self.motion is not None:  # add warnings of toggles and doubtful inputs of joints
             said += [toggle.message for toggle in self.motion.toggles]
             angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
             said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]
@@ -227,7 +227,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         return drawings.mechanism_figure(drawn, self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
-        """Make the drawing of the mechanism as drawn and at a fraction of its stroke, from 0 to 1."""
+        """Make the drawing of the mechanism at a fraction of its stroke (0 to 1), and as drawn (in grey)."""
         return ((self._drawing(self._index_at(place)),),)
 
     def charts(self, place: float) -> Sequence[Chart]:

@@ -55,7 +55,7 @@ def name_output(words: str) -> str:
 
 
 def select_rows(count: int) -> np.ndarray:
-    """Return the indices of the positions, of `count` in a stroke, that the table shows."""
+    """Return the indices of the positions that the table shows, of `count` positions in a stroke."""
     return evenly_spread(count, _ROWS)
 
 
@@ -89,7 +89,7 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
 
 
 def format_force(value: Any, digits: int = 5) -> str:
-    """Format a force as text; nan: statics does not determine the force, or friction jams."""
+    """Format a force as text; nan (statics does not give the force, or friction jams): "not determined"."""
     number = float(np.ravel(value)[0])
     if np.isnan(number):
         return "not determined"
@@ -97,7 +97,7 @@ def format_force(value: Any, digits: int = 5) -> str:
 
 
 def format_size(value: Any, unit: str, digits: int = 5) -> str:
-    """Format a force or moment with its unit; for nan, words without a unit."""
+    """Format a force or moment with its unit; nan gives "not determined" without a unit."""
     return format_force(value, digits) + ("" if np.isnan(value) else f" {unit}")
 
 
@@ -301,7 +301,7 @@ class PlanarAnswer(Answer):
 
     @property
     def equilibria(self) -> Mapping[str, Equilibrium]:
-        """Equilibria whose bodies are drawn one by one, by heading."""
+        """Equilibria for which free-body diagrams are drawn, by the heading of the diagrams."""
         return {"": self.equilibrium}
 
     def free_bodies(self) -> Figure:

@@ -20,17 +20,18 @@ from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
 _SHOWN = 24  # largest number of rows of a sweep that are shown
 _ROUNDING = 1e-12  # relative difference of two results below which they count as equal
+# Size of each displayed unit in SI units.
 SCALES = {
     "mm": 1e-3,
     "deg": pi / 180,
     "kN": 1e3,
     "MPa": 1e6,
     "MW/m2": 1e6,
-}  # size of each displayed unit in SI units
+}
 
 
 def take(name: str, words: str, unit: str = "") -> Output:
-    """Make an output from the attribute of the same name, shown in a unit."""
+    """Make an output from the attribute `name` of a result, described by `words` and shown in `unit`."""
     return Output(name, words, attrgetter(name), unit, SCALES.get(unit, 1.0))
 
 

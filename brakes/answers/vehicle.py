@@ -143,7 +143,7 @@ class VehicleAnswer(Answer):
     def tables(self) -> list[RenderableType]:
         """Make the tables of both directions, of wanted values that do not exist, and of the lever."""
         ways = [*self.ways.values()]
-        # Outputs left out here, because other rows and tables show them: status in words, and stop.
+        # These outputs are left out: another row has the status in words, and another table has the stop.
         elsewhere = {"holds", *(each.name for each in _SLOWING)}
         others = with_less_and_more(self.design, "road.friction", BRAKE.solve)
         doubtful = [[other.ways[axle] for other in others] for axle in self.ways]
@@ -260,7 +260,11 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
 def _solve_way(
     design: VehicleInput, axle: Axle, force: Any, pulled: Actuation | None, gain: Any
 ) -> OneDirection:
-    """Solve one direction: the axle is downhill at rest, and leads in a stop."""
+    """Solve one direction, in which `axle` is downhill at rest and leads in a stop.
+
+    `force` is the force of the lever's brakes along the ground [N], inf without a lever; `pulled` are the
+    forces from the lever to the brakes; `gain` is the braking force over the force on each actuator.
+    """
     standing, road, braking = design.standing, design.road.core, design.braking
     holding = vehicle.hold(standing, road, braking.parked_by, axle, force)
     needs = {"friction_to_hold": vehicle.friction_to_hold(standing, road.slope, braking.parked_by, axle)}

@@ -372,7 +372,7 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
     try:
         core = mechanism_from_dict({**tables, "run": _without(run, "driver", "travel")}, "mechanism").core
     except (ConfigError, ValueError):
-        return  # the form shows mistakes beside its fields
+        return  # no advice: the form shows mistakes beside its fields
     if not isinstance(core, Mechanism):
         return
     free = core.system.size - core.system.constraints

@@ -37,7 +37,7 @@ HEADINGS = {
 def make_document(
     brake: BrakeType[Any], screens: tuple[Screen, ...] = (), check: Callable[[str, str], object] | None = None
 ) -> Document:
-    """Make a document of a type of brake, which opens with the example of its name.
+    """Make a document of a type of brake, which opens with the example file that has the brake's name.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def make_document(
     screens : tuple of Screen
         Screens of the document; by default the screen of the type of brake.
     check : callable, optional
-        ``check(text, name)`` raises `ConfigError` if a file is not for this document; by default the
-        commands' check.
+        ``check(text, name)`` raises `ConfigError` if a file is not for this document; by default it
+        is checked as by the commands.
     """
 
     def accept(text: str, source: str) -> object:
@@ -134,7 +134,7 @@ def _make_backwards(brake: BrakeType[Any]) -> Backwards:
 
 
 def _as_printed(answer: ForkliftAnswer) -> str:
-    """Make an HTML table of the results beside the printed results of the paper's stop."""
+    """Make an HTML table of the results beside those by the paper's equations of the stop, as printed."""
     printed = answer_as_printed(answer.design, answer.stages) or answer
     rows = list_outputs(stage_outputs(answer.stages), [answer, printed])
     return html([table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))])

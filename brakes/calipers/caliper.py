@@ -142,7 +142,7 @@ class Caliper:
         AssemblyError, OutOfReachError
             If the joints of the drawing cannot be brought together, or the mechanism does not reach a travel.
         ValueError
-            If the mechanism does not have one motion.
+            If the mobility of the mechanism is not 1.
         """
         travel = self.contact if travel is None else travel
         if np.ndim(travel) == 0:

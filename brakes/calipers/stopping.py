@@ -180,7 +180,8 @@ def stop(
     """Compute a stop on level ground by the pads on one rim, within the limits of grip and pitching over.
 
     With the force F on each of two pads, E = (M + J / R^2) v^2 / 2 = integral of 2 mu F (r / R) ds over the
-    stopping distance. For constant F, no inertia and r = R this is M v^2 = 4 mu F L (as on the eeBrake page).
+    stopping distance. For constant F, no inertia and r = R this is M v^2 = 4 mu F L, with
+    the stopping distance L (as on the eeBrake page).
     The rider does not squeeze harder than grip and pitching over allow.
 
     Parameters

@@ -72,7 +72,8 @@ class FindOptions:
         file; or, with bounds and a number of samples, between these: "brake.friction=0.1:0.6:51"; for whole
         numbers, each one between the bounds is tried.
     so_that : str, optional
-        The result that the input shall give, such as "torque = 300 N m"; a wrong name lists all.
+        The result that the input shall give, such as "torque = 300 N m"; with a wrong name,
+        all names are listed.
     """
 
     find: Annotated[str | None, Parameter(show_default=False)] = None
@@ -241,7 +242,7 @@ def _answer_many(
             how = {"combine": varying.combine, "run": run}
             made, warnings = brake.sweep(tables, file, varying.vary, asked.what, **how)
             answered = any(np.isfinite(values).any() for values in made.found)
-            none = f"at none of {made.designs.count} values is there an answer"
+            none = f"there is no answer for any of {made.designs.count} designs"
     return made, warnings, "" if answered else none
 
 
@@ -301,7 +302,7 @@ def caliper(
         for name, value in given.items():
             if value:
                 text = ", ".join(map(str, value)) if isinstance(value, tuple) else value
-                says = "--list shows the named calipers alone; leave one of the two out"
+                says = "--list only lists the named calipers; leave one of the two out"
                 raise ValueError(f"{name} = {text}: {says}")
         show(names_tables())
         return
@@ -332,7 +333,7 @@ def mechanism(
     Parameters
     ----------
     file
-        The mechanism, part by part, or a caliper; `brakes keys mechanism` lists all keys.
+        TOML file of a mechanism, part by part, or of a caliper; `brakes keys mechanism` lists all keys.
     free_bodies
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
@@ -378,7 +379,7 @@ def forklift(
     Parameters
     ----------
     file
-        The truck, the stop, and one of its brakes; `brakes keys forklift` lists all keys.
+        TOML file of the truck, the stop and one of the brakes; `brakes keys forklift` lists all keys.
     stage
         Stage to show; the stages before it are computed if they are needed.
     asked

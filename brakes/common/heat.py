@@ -127,9 +127,8 @@ class Duty:
         if self.friction_curve is not None:
             curve = np.asarray(self.friction_curve)
             self._check(curve)
-            set_fields(
-                self, friction_curve=tuple(map(tuple, curve.tolist()))
-            )  # tuples can be compared, arrays cannot
+            # Tuples make instances comparable; arrays do not.
+            set_fields(self, friction_curve=tuple(map(tuple, curve.tolist())))
 
     def _check(self, curve: np.ndarray) -> None:
         if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < 2:
@@ -258,7 +257,7 @@ def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
 
 _WORDS = {
     "never stops": "the brake gives less than load_torque or a slope, at once or by fading: it never stops",
-    "too hot": "the brake gets hotter than the last temperature of friction_curve: give more of the curve",
+    "too hot": "the brake gets hotter than the last temperature of friction_curve: extend the curve",
 }
 TorqueAt = Callable[[Numbers], Numbers]
 

@@ -166,7 +166,7 @@ class ForkliftInput(Section):
                 "[forces] with lining_friction, and [brake] or [levers]"
             )
         if self.heat and not self.drums:
-            raise ValueError("[heat] goes with [drums], which it warms: give them")
+            raise ValueError("[heat] needs [drums], the drums that are heated: give [drums]")
         if f.piston_force is not None or f.torque is not None or f.lining_friction is None:
             raise ValueError(
                 "[forces]: with [pedal] give lining_friction alone: piston_force and torque follow from it"

@@ -62,7 +62,7 @@ class CurveQuantity(Quantity):
 
     @property
     def bounds(self) -> str:
-        """An example of rows, for messages."""
+        """An example of rows, which messages show in place of bounds."""
         return _SUCH_AS
 
     def parse(self, given: object) -> Any:

@@ -120,7 +120,7 @@ class MechanismInput(config.CoreSection):
                 raise InvalidInput("run.friction", friction, bound) from None
             made = Mechanism(tuple(self.bodies), tuple(joints), tuple(loads))
             if friction and not made.friction:
-                bound = "it is that of pins, and there are no pins; give friction at the slot or contact"
+                bound = "it is for pins, and there are no pins; give friction at the slot or contact"
                 raise InvalidInput("run.friction", friction, bound)
             rubs = made.friction or "friction" in self.run.model_fields_set  # a sweep may include friction 0
             if self.run.driver is not None and self.run.travel is None and not rubs:

@@ -148,7 +148,7 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
 
 
 def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool = False) -> Chart:
-    """Make the chart of C* = torque / (force radius) over friction, marking where the brake locks.
+    """Make the chart of C* = torque / (force * radius) over friction, marking where the brake locks.
 
     It has a curve for each shoe and, if there are several, one for the brake.
 

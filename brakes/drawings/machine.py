@@ -84,5 +84,5 @@ def over_friction(
     shows all of the curves.
     """
     high = None if near is None else max(2.5 * near, 1.0)
-    factor = ChartAxis("C* = torque / (force radius)", low=0.0, high=high)
+    factor = ChartAxis("C* = torque / (force * radius)", low=0.0, high=high)
     return Chart(title, ChartAxis("friction of the linings", low=0.0), factor, curves, marks=marks)

@@ -212,7 +212,7 @@ class ShoeResult(SlidesOrLocks):
         Bound of the relative error of torque, pressure, factors and the actuating force, and of the other
         forces relative to the largest: rounding of inputs and sums, which grows as 1 / margin.
     c_star, c_star_slope : ndarray
-        Shoe factor C* = torque / (force radius), and its derivative with respect to the friction.
+        Shoe factor C* = torque / (force * radius), and its derivative with respect to the friction.
     locking_friction : ndarray
         Friction at which the shoe locks; inf if it never does.
     margin : ndarray

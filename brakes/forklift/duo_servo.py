@@ -282,7 +282,7 @@ class ShoeMotion(HasLevers, Result):
 
     @property
     def residual(self) -> Numbers:
-        """Residual at the end of each stage: gap of contact point, or of piston to its bottom, over r."""
+        """Larger of two residuals over r: gap at the contact point, and of the piston to its bottom."""
         brake, r = self.geometry, self.geometry.drum_radius
         x, y = _turned(r - self.clearance, 0.0, brake.contact_angle)
         seated = np.hypot(*brake._after_seating(np.asarray(self.seating_turn), x, y)) - r

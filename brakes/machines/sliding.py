@@ -1,4 +1,4 @@
-"""Drum brakes whose shoes slide on a flat abutment, with contact on one side only.
+"""Drum brakes whose shoes slide on a flat abutment; a lining may lift in part, as it cannot pull.
 
 Axes and angles are those of `brakes.drum`. A rigid shoe that no pin holds presses with p0 max(0, sin(alpha -
 delta)): it lifts where the lining would have to pull. Its end at (b, -c) slides along the abutment without

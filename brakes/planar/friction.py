@@ -191,14 +191,14 @@ def _jams_when_disturbed(
             offset[:, [coordinate]] = sense * size
             without = _newton(system, balance, multiplier, np.where(unpressed, 0.0, law), offset)[0]
             pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
-            if pressed.any():  # all other pressing forces are 0, and their directions meaningless
+            if pressed.any():  # no friction at other joints without pressure: it has no direction
                 rubbing = np.where(unpressed & ~pressed, 0.0, law)
                 jams |= pressed.any(axis=1) & _newton(system, balance, multiplier, rubbing, offset)[1]
     return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
 
 
 def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
-    """Compute the pressing force at joints with friction, relative to the largest of all, by position."""
+    """Compute pressing forces (positions, joints with friction) over the largest force at the position."""
     force = np.zeros((len(multiplier), len(system.pressing)))
     for k, rows in enumerate(system.pressing):
         force[:, k] = np.linalg.norm(multiplier[:, rows], axis=1)

@@ -117,7 +117,7 @@ class Mechanism:
         return Position(self, np.zeros(self.system.size))
 
     def load(self, name: str) -> Load:
-        """Return the load of a name."""
+        """Return the load with a name; raise a ValueError that suggests a known name if there is none."""
         kind("load", name, str)
         known = {load.name: load for load in self.loads}
         if name not in known:
@@ -196,7 +196,7 @@ _SMALL_STEP = 1e-9
 _GUIDING_STEP = 1e-5
 _CLOSED = 1e-14  # gap of a closed joint due to rounding, over the length of the mechanism
 _TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
-_FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # step sizes along the curve, over the length of the mechanism
+_FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # steps along the curve, over the mechanism's length
 _NODES = 20_000
 _HALVINGS = 12  # bisections of a segment: finer than the distance of its cubic from the curve
 

@@ -30,7 +30,7 @@ from brakes.planar.system import (
 
 _BALANCED = 1e-9  # largest residual of equilibrium that counts as zero, over the largest force
 _UNDETERMINED = 1e-7  # component of a self-stress above which a reaction counts as undetermined
-_BESIDE = 1e-2  # fraction of its length by which a mechanism is moved away from a toggle position
+_BESIDE = 1e-2  # part of its length by which a mechanism is moved off a toggle, to test if it is held there
 _WEAK = 1e-5  # relative singular value below which the result counts as ill-conditioned
 
 

@@ -179,7 +179,7 @@ def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axl
 
 
 def _deceleration(c: StopConditions, left: Numbers) -> Numbers:
-    """Find the deceleration at full force [m/s2] for a stop in a distance after the reaction time [m]."""
+    """Find the deceleration at full force [m/s2] of a stop within `left` [m] after the reaction time."""
     V, t2 = np.asarray(c.speed), np.asarray(c.rise_time)
     way = np.where(np.asarray(left) > 0, left, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):

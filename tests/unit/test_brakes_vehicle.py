@@ -276,7 +276,7 @@ def test_forklift_with_a_duty_fades(run, forklift):
     [
         (('["200 degC", 0.2]', '["45 degC", 0.29]'), 1, "the brake gets hotter than the last temperature"),
         (('["200 degC", 0.2]', '["60 degC", 0.01]'), 1, "by fading: it never stops"),
-        (('[drums]\ndrum_mass = "18 kg"\nlining_area = "500 cm2"\n', ""), 2, "[heat] goes with [drums]"),
+        (('[drums]\ndrum_mass = "18 kg"\nlining_area = "500 cm2"\n', ""), 2, "[heat] needs [drums]"),
     ],
 )
 def test_forklift_that_fades_too_far_is_said(run, forklift, replaced, code, said):
