@@ -350,8 +350,8 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     model = ForkliftInput
     together = (
         "[truck] and [stop] are for the vehicle, [brake] for the kinematics, [forces] with [brake] or "
-        "[levers] for the forces; [pedal] and [line] need the tables of all three, [drums] needs [pedal], "
-        "[heat] needs [drums]."
+        "[levers] for the forces; [pedal] and [line] need the tables for vehicle and forces, [drums] needs "
+        "[pedal], [heat] needs [drums]."
     )
     sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums", "heat")
     example_sweep = "stop.speed=10:30:21 km/h"

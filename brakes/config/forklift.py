@@ -125,7 +125,7 @@ class ForcesInput(Section):
 class ForkliftInput(Section):
     """File of a forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], for the stages wanted.
 
-    [pedal], [line], [drums] and [heat] need the tables of all stages.
+    [pedal], [line], [drums] and [heat] need the tables of the stages vehicle and forces.
     """
 
     truck: _TruckInput | None = None

@@ -27,8 +27,8 @@ class Ring(Machine):
 
     Force and friction moment per radian of a ring with the radii ri (inner) and ro (outer), at the largest
     pressure p and a friction coefficient of 1, are p ri (ro - ri) and p ri (ro^2 - ri^2)/2 under uniform
-    wear, p (ro^2 - ri^2)/2 and p (ro^3 - ri^3)/3 under uniform pressure (Budynas and Nisbett, Shigley's Mechanical
-    Engineering Design, sections 16-5 to 16-7).
+    wear, p (ro^2 - ri^2)/2 and p (ro^3 - ri^3)/3 under uniform pressure (Budynas and Nisbett, Shigley's
+    Mechanical Engineering Design, sections 16-5 to 16-7).
 
     Parameters
     ----------
