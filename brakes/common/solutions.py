@@ -194,7 +194,7 @@ class Solutions(Result):
     def _reasons(self) -> Iterator[str]:
         """Yield the reasons why the answer does not reach the wanted value."""
         yield from self._extremes() if self.pieces else ()
-        yield from (f"it jumps past this at {self.input} = {self._input(each)}" for each in self.jumps)
+        yield from (f"it jumps past the wanted value at {self.input} = {self._input(x)}" for x in self.jumps)
         yield from self.lacking if self.pieces else (gap.reason for gap in self.gaps)
 
     def _extremes(self) -> Iterator[str]:
