@@ -67,10 +67,10 @@ _FORCES = (
         "leading_share trailing_share",
     ),
     Output(
-        "bolt_x", "cylinder bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
+        "bolt_x", "force on the bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
     ),
-    Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
-    Output("bolts", "cylinder bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
+    Output("bolt_y", "force on the bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
+    Output("bolts", "force on the bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
     *take_fields(InternalForces, "residual error"),
 )
 

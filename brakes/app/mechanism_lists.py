@@ -119,7 +119,7 @@ def groups(entries: Mapping[str, str]) -> list[ListGroup]:
     free = "Forces and springs. If a force has no magnitude, equilibrium determines it."
     drawn = "Points where joints and loads act. Drag them in the drawing."
     each = (
-        ("Bodies", "What moves. The ground is there by itself.", bodies, {"body": "body"}),
+        ("Bodies", "What moves. The ground always exists.", bodies, {"body": "body"}),
         ("Points", drawn, points, {"point": "point"}),
         ("Joints", "They hold bodies together, or to the ground.", of_joints, joints),
         ("Loads", free, of_loads, loads),

@@ -98,7 +98,7 @@ class MechanismInput(config.CoreSection):
     model_config = SHORT_TEXTS
 
     title: Annotated[str, Field(description="title")] = "mechanism"
-    bodies: Annotated[list[str], Field(description="names of the bodies; the ground is there by itself")]
+    bodies: Annotated[list[str], Field(description="names of the bodies; the ground always exists")]
     points: dict[str, Point] = {}  # noqa: RUF012
     caliper: RolesInput | None = None
     run: RunInput = RunInput()

@@ -64,7 +64,7 @@ class Mechanism:
         for key, wanted in {"bodies": str, "joints": Joint, "loads": Load}.items():
             set_fields(self, **{key: several(key, getattr(self, key), wanted)})
         if not self.bodies or GROUND in self.bodies:
-            raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} is there by itself")
+            raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} always exists")
         for what, names in (("body", self.bodies), ("joint or load", [part.name for part in self.parts])):
             if twice := [name for name, times in Counter(names).items() if times > 1]:
                 raise ValueError(f"{what} {twice[0]!r} occurs twice: give each its own name")

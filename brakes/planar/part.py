@@ -119,7 +119,7 @@ Direction = Annotated[Point, DescribedDirection(meaning="direction, as a vector 
 Length = Annotated[float, Described("m", meaning="length, if not the drawing's", above=0)]
 _OPPOSES = "friction opposes the motion by itself; give its size"
 Coefficient = Annotated[float, Described("", "mu", "coefficient of friction", least=0, remedy=_OPPOSES)]
-_UNKNOWN = "or None for an unknown amplitude"
+_UNKNOWN = "or None for an unknown magnitude"
 _NEWTONS = Described("N", meaning="magnitude; unknown if not given", remedy=_UNKNOWN)
 Newtons = Annotated[float, _NEWTONS]
 NewtonMetres = Annotated[float, replace(_NEWTONS, unit="N m")]

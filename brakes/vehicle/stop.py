@@ -241,8 +241,8 @@ _SENTENCES = {
     "less slope, more friction, or another load",
     "brakes too weak": "the brakes hold less than the slope pulls, though the road would hold more: the "
     "truck never stops; press harder, or take stronger brakes",
-    "too near to decide": "does not stop: the slope is too near the steepest that the locked front wheels "
-    "hold to decide; less slope, more friction, or another load",
+    "too near to decide": "does not stop: the slope is too near the steepest on which locked front wheels "
+    "hold the truck; less slope, more friction, or another load",
 }
 
 
