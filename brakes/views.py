@@ -1,6 +1,7 @@
-"""Tables, columns and plots of the results of this package, by the name of the result's class.
+"""Tables, columns and plots that show the results of this package.
 
-Results of the mechanics that are not listed here are shown by their fields.
+`VIEWS` has a view for each class of results that it names. A result of any other class is shown as a table of
+its fields.
 """
 
 from __future__ import annotations
@@ -30,16 +31,17 @@ def _solution_tables(found: Solutions) -> Group:
     ends = ([f"{p.start:.6g}", f"{p.end:.6g}", *p.shown_ends] for p in found.pieces)
     courses = ([a, b, p.course, c, d] for p, (a, b, c, d) in zip(found.pieces, ends, strict=True))
     gaps = ([f"{gap.start:.6g}", f"{gap.end:.6g}", "none", "-", "-"] for gap in found.gaps)
-    title = f"Course of {heads[1]} over {heads[0]}, by {len(found.samples)} samples"
+    title = f"{heads[1]} over {heads[0]}; number of samples: {len(found.samples)}"
     rows = sorted((*courses, *gaps), key=lambda row: float(row[0]))
     course = table(title, columns, rows, (2,), 2)
     return Group(found.message, course, *found.lacking) if found.there else Group(course)
 
 
 def _solution_columns(found: Solutions) -> Columns:
-    """Make columns with a row per solution, an input value or an interval of inputs with the wanted result.
+    """Make columns with one row per solution: start and end of the input's interval, and the residual.
 
-    They are the ends of the interval (equal for a single value), and the result minus the wanted value.
+    Where a single value of the input is the solution, start and end are equal. The residual is the result
+    minus the wanted value.
     """
     name = found.input.replace(".", "_")
     ends = np.concatenate([np.stack([found.values] * 2, axis=-1), found.ranges])

@@ -81,7 +81,7 @@ class Answer(Result, ABC):
         return ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return the reasons why designs have no result, by index; `count` designs were solved together."""
+        """Return the reason why a design has no result, by its index; `count` is the number of designs."""
         return {}
 
     def loadable(self) -> Result | None:
@@ -113,8 +113,8 @@ class Answer(Result, ABC):
         Parameters
         ----------
         place : float, optional
-            Position of the screen's slider; if not given, the figure is that of the command and the HTML
-            report.
+            Position of the screen's slider; if not given, the figure is drawn as the command and the HTML
+            report show it.
         """
 
     def drawings(self, place: float) -> Rows:
@@ -126,11 +126,14 @@ class Answer(Result, ABC):
         return ()
 
     def branches(self) -> Mapping[str, Answer]:
-        """Return copies of this object, each of which draws one of several solutions, by name; else none."""
+        """Return copies of this answer by name, each of which draws another of several solutions.
+
+        An answer with only one solution returns an empty mapping.
+        """
         return {}
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Make the handles of the first drawing, points that can be moved, for a position of the slider."""
+        """Make the handles (points to drag) of the first drawing, for a position of the slider."""
         return ()
 
 
@@ -231,7 +234,7 @@ class BrakeType(ABC, Generic[FileModel]):
     most_cases : int
         Largest number of designs in a sweep.
     together : str
-        Which tables or keys of the file go together, in one sentence; "" if that is evident.
+        One sentence on which tables or keys must be given together in the file; "" if that is evident.
     key_results : tuple of (words, name)
         Outputs at the top of the screen: their words there, and their names.
     """
@@ -273,7 +276,7 @@ class BrakeType(ABC, Generic[FileModel]):
         return tables
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form, for the entries given in the form."""
+        """Make drawings that explain the symbols of the input form, for the entries given in it."""
         return ()
 
     @abstractmethod
@@ -306,7 +309,10 @@ class BrakeType(ABC, Generic[FileModel]):
         """Solve the requested designs of a sweep; return their results, and warnings."""
 
     def answer(self, tables: Mapping[str, Any], source: str) -> Answer:
-        """Read and solve the design of tables, and add the provenance; errors as of `read` and `solve`."""
+        """Read and solve the design that tables describe, and add the provenance to the answer.
+
+        It raises the errors of `read` and `solve`.
+        """
         start, design = perf_counter(), self.read(tables, source)
         with in_words_of_file(type(design), tables, source):
             answer = self.solve(design)
@@ -349,7 +355,8 @@ class BrakeType(ABC, Generic[FileModel]):
         options : pair of str
             Names of the options that give inputs and results, for messages.
         combine : {"product", "zip"}
-            Whether each value is combined with each of the other inputs, or values are taken side by side.
+            "product": every combination of values; "zip": the first values of all inputs, then the second,
+            ...
         run : TaskRunner, optional
             Runs the tasks with designs that are solved one by one; by default in this process.
 
@@ -403,7 +410,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return validated(self.model, tables, source)
 
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:
-        """Return the inputs of the form, which are those of the file's description."""
+        """Return the inputs of the form: all inputs that the `model` of the file describes."""
         return describe(self.model)
 
     @property
@@ -412,7 +419,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return [name for name, field in self.model.model_fields.items() if not field.is_required()]
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Describe the numbers and choices in the design's tables; a sweep refuses choices, naming them."""
+        """Describe the inputs in the design's tables: numbers, and choices, which a sweep refuses by name."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
         return [each for each in there if each.quantity.unit or each.quantity.symbol or each.choices]
 

@@ -1,4 +1,4 @@
-"""Results of bicycle calipers, and the types of brakes for named calipers and for mechanisms."""
+"""Results of bicycle calipers, and the types of brakes `MechanismType` and `CaliperType`."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ from brakes.drawings.mechanism import free_body_drawings
 from brakes.planar import AssemblyError, Equilibrium, Mechanism, OutOfReachError, solve
 from brakes.planar.system import OppositeTravelError, join_names
 
-_STROKE = "Travels [mm], forces of the pads over the finger's, velocity of the left pad over the right pad's"
+_STROKE = "Travels [mm], pad force / finger force, velocity of the left pad / velocity of the right pad"
 _AT_STOPS = 11  # number of positions of the screen's slider over the stroke
 _STROKE_HEADS = (
     *("cable", "finger", "right pad", "left pad"),
@@ -74,10 +74,10 @@ _OUTPUTS = (
     *(
         Output(key, words, lambda a, key=key: getattr(a.friction, key) if a.friction else np.nan, unit)
         for key, words, unit in (
-            ("squeeze", "share of the pad force that friction leaves, squeezing", ""),
-            ("release", "share of the cable tension that friction holds, releasing", ""),
-            ("squeezing_tension", "tension of the cable for the same forces of the pads, squeezing", "N"),
-            ("releasing_tension", "tension of the cable for the same forces of the pads, releasing", "N"),
+            ("squeeze", "efficiency, squeezing: cable tension without friction / with friction", ""),
+            ("release", "releasing: cable tension with friction / without friction", ""),
+            ("squeezing_tension", "cable tension with friction, squeezing, for unchanged pad forces", "N"),
+            ("releasing_tension", "cable tension with friction, releasing, for unchanged pad forces", "N"),
         )
     ),
     Output("stopping_distance", "stopping distance", lambda a: a.stop.distance if a.stop else np.nan, "m"),
@@ -86,7 +86,9 @@ _OUTPUTS = (
 
 @dataclass(frozen=True)
 class CaliperAnswer(planar.PlanarAnswer):
-    """A caliper over its stroke and at its end, with friction, wear and a stop if the file has them.
+    """Results of a caliper over its stroke and at the end of the stroke.
+
+    Friction, wear and a stop are included if the file has them.
 
     Attributes
     ----------
@@ -107,7 +109,7 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @classmethod
     def of(cls, caliper: Caliper, design: CaliperInput | MechanismInput) -> CaliperAnswer:
-        """Move a caliper over its stroke; add friction and wear only if statics determines the forces."""
+        """Solve a caliper over its stroke; add friction and wear only if statics determines the forces."""
         given = design.run
         run = caliper.stroke(given.travel, given.points, given.finger)
         end = float(run.cable[-1])
@@ -125,12 +127,15 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @property
     def status(self) -> str:
-        """Status: whether statics determines the forces, and the pads press; see `planar.Equilibrium`."""
+        """Status as in `planar.Equilibrium`: whether statics determines the forces and both pads press."""
         return self.run.status
 
     @property
     def message(self) -> str:
-        """The status as a sentence, with the travel above which a pad would have to pull."""
+        """The status as a sentence.
+
+        If a pad would have to pull, the sentence begins with the travel of the cable from which this is so.
+        """
         pulls = (self.run.pad_force <= 0).any(axis=1)
         if not pulls.any():
             return self.run.message
@@ -195,7 +200,7 @@ class CaliperAnswer(planar.PlanarAnswer):
             f"{run.caliper}: {run.finger_force:g} N on the hand lever, lever ratio {run.lever_ratio:g}, "
             f"{run.tension:g} N in the cable",
             table(_STROKE, _STROKE_HEADS, rows),
-            planar.reactions_table(self.equilibrium, f"Forces at {1e3 * run.cable[-1]:.4g} mm of cable"),
+            planar.reactions_table(self.equilibrium, f"Forces at cable travel {1e3 * run.cable[-1]:.4g} mm"),
             f"Over the whole stroke the finger travels {run.finger[-1] / pads if pads > 0 else np.nan:.4f} "
             "times as far as both pads together.",
         ]
@@ -211,7 +216,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         if (w := self.wear) is not None:
             shown += [
                 f"Pads worn by {1e3 * lost:g} mm touch at {1e3 * finger:.3f} mm of finger travel; "
-                f"pad/finger there {right:.4f} right, {left:.4f} left."
+                f"force of the pad / of the finger there: {right:.4f} right, {left:.4f} left."
                 for lost, finger, (right, left) in zip(w.lost, w.finger, w.advantage, strict=True)
             ]
         if self.stop is not None:
@@ -233,7 +238,7 @@ class CaliperAnswer(planar.PlanarAnswer):
             for key, value in vars(Stance()).items()
             if key not in given
         )
-        return f"; of a usual bicycle, as [stop] does not give them: {said}" if said else ""
+        return f"; values of a usual bicycle, as [stop] does not give them: {said}" if said else ""
 
     @staticmethod
     def _tensions(friction: PivotFriction) -> str:
@@ -267,12 +272,18 @@ class CaliperAnswer(planar.PlanarAnswer):
         return self.run.to_dict() | {key: value and value.to_dict() for key, value in more.items()}
 
     def figure(self, place: float | None = None) -> Figure:
-        """Draw the caliper open and, with forces, at a fraction of the stroke (0 to 1), beside its curves."""
+        """Draw the caliper at a fraction of the stroke (0 to 1), and beside it the curves over the stroke.
+
+        The drawing also has the open caliper in grey, and the forces.
+        """
         cable, closed = self._closed_at(1.0 if place is None else place)
         return caliper_figure(self.caliper, self.run, closed, cable, self._caption(cable))
 
     def drawings(self, place: float) -> Rows:
-        """Make the drawing of the caliper open and, with forces, at a fraction of the stroke from 0 to 1."""
+        """Make the drawing of the caliper at a fraction of the stroke (0 to 1), with its forces.
+
+        The open caliper is drawn in grey.
+        """
         cable, closed = self._closed_at(place)
         title = "\n".join(filter(None, (title_of(self.caliper, self.run, cable), self._caption(cable))))
         return ((caliper_drawing(self.caliper, closed, title),),)
@@ -293,7 +304,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         return float(np.interp(place, (0.0, 1.0), self.run.cable[[0, -1]]))
 
     def _caption(self, cable: float) -> str:
-        """State the cable tensions with friction, for the end of the stroke; empty elsewhere."""
+        """State the cable tensions with friction if `cable` is the end of the stroke; else an empty text."""
         return self._tensions(self.friction) if self.friction and cable == self.run.cable[-1] else ""
 
 
@@ -306,7 +317,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
     name = "mechanism"
     title = "Mechanism"
     method = "equilibrium of rigid bodies in a plane, solved by singular values; friction by Newton's method"
-    error_from = "rounding of the drawing and residual, both over the equations' smallest singular value"
+    error_from = "rounding and residual of the equations, both divided by their smallest singular value"
     purpose = "Any planar mechanism of bodies, joints and loads: every force, as drawn and over a stroke."
     sections = ("", "points", "run", "caliper", "stop")
     needs = ("title", "bodies", *PARTS, *sections[1:])
@@ -343,7 +354,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         return mechanism_from_dict(tables, source)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Reduce the stroke to the positions at which the slider stops, and leave out worn pads."""
+        """Return tables with a stroke of only the positions at which the slider stops, without worn pads."""
         run = dict(tables.get("run", {}))
         points = run.get("points", _AT_STOPS)
         run["points"] = min(points, _AT_STOPS) if isinstance(points, int) else points
@@ -356,7 +367,8 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         Raises
         ------
         NoAnswer
-            If it cannot be assembled, does not reach the end of its stroke, or its mobility is not 1.
+            If the mechanism cannot be assembled, does not reach the end of its stroke, or does not have the
+            mobility 1.
         ValueError
             If the numbers are out of range.
         """
@@ -383,7 +395,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
                 raise NoAnswer(say(error)) from None
 
     def _first(self, answer: Answer, outputs: Mapping[str, Output]) -> Sequence[tuple[str, str]]:
-        """Return words and names of three loads for the top of the screen, first those that are not given."""
+        """Return words and names of three loads for the top of the screen, the unknown loads first."""
         if not isinstance(answer, MechanismAnswer):
             return super()._first(answer, outputs)
         mechanism = answer.equilibrium.position.mechanism
@@ -439,7 +451,10 @@ class CaliperType(MechanismType):
     slider = Slider("stroke", ("open", "closed"), step=0.1)
 
     def coarser(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Reduce the stroke to the positions at which the slider stops; leave out friction and worn pads."""
+        """Return tables with a stroke of only the positions at which the slider stops.
+
+        Friction and worn pads are left out.
+        """
         coarse = super().coarser(tables)
         friction = {"friction": 0.0} if "friction" in coarse["run"] else {}
         return {**coarse, "run": {**coarse["run"], **friction}}
@@ -449,7 +464,7 @@ class CaliperType(MechanismType):
         return caliper_sketch(entries.get("caliper", "").strip())
 
     def read(self, tables: Mapping[str, Any], source: str) -> CaliperInput | MechanismInput:
-        """Read the caliper that tables describe; without a name, the message lists the names."""
+        """Read the named caliper that tables describe; without a name, an error lists the known names."""
         return super().read({"caliper": ""} | dict(tables), source)
 
     def inputs(self, tables: Mapping[str, Any]) -> list[Input]:

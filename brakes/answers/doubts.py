@@ -19,7 +19,7 @@ PART = 0.1  # fraction by which friction varies, according to makers of linings
 
 
 def change(other: float, value: float, unit: str, none: str) -> str:
-    """State a result `other` with its unit and its change relative to `value`; `none` if not finite."""
+    """State a result `other` with its unit and its change from `value` in %; `none` if it is not finite."""
     if not np.isfinite(other):
         return none
     relative = f" ({100 * (other / value - 1):+.1f} %)" if value else ""

@@ -79,7 +79,7 @@ class DrumAnswer(RubbingAnswer):
         return charts_of(self.result)
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Make points to move in the drawing: lining, pin, force and drum of the first shoe."""
+        """Make handles to move the lining, pin and force of the first shoe, and the drum, in the drawing."""
         shoe = self.result.shoes[0].shoe
         r, force = float(shoe.drum_radius), float(shoe.force_arm)
         pivot = float(shoe.pivot[0]), float(shoe.pivot[1])
@@ -114,7 +114,7 @@ class DrumType(RubbingType[DrumInput]):
         return DrumAnswer(design, design.solve()).stop_again()
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form."""
+        """Make drawings that explain the symbols of the input form."""
         return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:

@@ -27,7 +27,8 @@ from brakes.common.solutions import Solutions
 
 FIND, SO_THAT = "--find", "--so-that"
 _USUAL = {"m": "mm", "rad": "deg"}  # units in which values are shown if the file has none
-_TIMES = 10.0  # factor around an input's value within which it is sought, if no bounds are given
+# Without given bounds an input is sought between its value divided by this factor and times this factor.
+_TIMES = 10.0
 _ROUNDED = 1e-3  # largest relative error that a wanted value may have because it was typed with few digits
 # Number of samples at the start of a search, for designs solved together, and for designs solved one by one.
 _TOGETHER, _ONE_BY_ONE = 129, 17
@@ -70,7 +71,7 @@ def find_in_file(
         how = "each whole number is tried"
         found = find_whole(answers, target, _whole_numbers(brake, axis), answers.reason)
     else:
-        how = "samples doubled until the rising and falling pieces stay the same; roots by algorithm 748"
+        how = "samples doubled until rising and falling ranges stay the same; roots by TOMS Algorithm 748"
         found = find(answers, target, np.unique(axis.given), answers.reason, rounding=rounding)
     return replace(
         found,
@@ -93,14 +94,14 @@ class _Designs:
     output: Output
 
     def __call__(self, x: np.ndarray) -> np.ndarray:
-        """Compute the result at values of the input [the axis' unit]; nan where there is none."""
+        """Compute the result at values of the input [unit of `axis`]; nan where a design has none."""
         try:
             return self._sweep(x).found[0]
         except NoAnswer:
             return np.full(len(x), np.nan)
 
     def reason(self, x: float) -> str:
-        """Return the reason why there is no result at a value of the input [unit of the axis]."""
+        """Return the reason why there is no result at a value of the input [unit of `axis`]."""
         try:
             made = self._sweep(np.array([x]))
         except NoAnswer as error:
@@ -117,7 +118,10 @@ class _Designs:
 
 
 def _wanted(outputs: Sequence[Output], text: str) -> tuple[Output, float, float, str]:
-    """Parse RESULT = VALUE: the output, its wanted value, half of the value's last digit, and its text."""
+    """Parse a text RESULT = VALUE.
+
+    Return the output, its wanted value, half a unit of the value's last digit, and the value's text.
+    """
     name, equals, amount = (part.strip() for part in text.partition("="))
     output, *more = chosen(outputs, name if equals else re.split(r"[^\w.]", name)[0], SO_THAT)
     form = f'give RESULT = VALUE, such as "{output.name} = {f"1 {output.unit}".rstrip()}"'
@@ -147,7 +151,7 @@ def _amount(text: str, unit: str) -> float:
     if unit == "deg":
         return SlopeQuantity("rad").convert(text) / SCALES["deg"]
     if unit == "K" and not text.endswith("K"):
-        raise InvalidValue("", text, "it is a difference from the temperature of the surroundings: give K")
+        raise InvalidValue("", text, "it is a difference from the temperature of the surroundings, in K")
     return Quantity(unit).convert(text if unit else float(text))
 
 
@@ -161,7 +165,11 @@ def _whole_numbers(brake: BrakeType[Any], axis: Axis) -> np.ndarray:
 
 
 def _axis(brake: BrakeType[Any], design: Any, tables: Mapping[str, Any], text: str) -> Axis:
-    """Find the sought input, with first samples as in the text or, without any, around the file's value."""
+    """Make the axis of the sought input, with the samples at which the search begins.
+
+    The samples are those of a text with bounds, such as "brake.friction=0.1:0.6:51". For a text that only
+    names the input they lie around the input's value in the file.
+    """
     inputs = brake.sweep_inputs(design, tables)
     entry = find_input(inputs, text.partition("=")[0].strip(), f'{FIND} = "{text}"')
     value, _ = nominal_of(design, entry, FIND)

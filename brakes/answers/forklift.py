@@ -67,10 +67,10 @@ _FORCES = (
         "leading_share trailing_share",
     ),
     Output(
-        "bolt_x", "cylinder bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
+        "bolt_x", "force on the bolts, horizontal, + to the leading shoe", lambda f: f.bolt_force[..., 0], "N"
     ),
-    Output("bolt_y", "cylinder bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
-    Output("bolts", "cylinder bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
+    Output("bolt_y", "force on the bolts, vertical, + up", lambda f: f.bolt_force[..., 1], "N"),
+    Output("bolts", "force on the bolts, resultant", lambda f: resultant(f.bolt_force), "N"),
     *take_fields(InternalForces, "residual error"),
 )
 
@@ -183,7 +183,7 @@ class ForkliftAnswer(Answer):
                 ]
                 for event, stage in zip(done.events, (done.right, done.left, done.drum), strict=True)
             ]
-            least = "rank and smallest singular value of the mechanism's constraints, least over the motion"
+            least = "least rank and least relative singular value of the constraints during the motion"
             heads_of_events = ("stage", "event", "rank", "smallest singular value")
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
             tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
@@ -267,7 +267,7 @@ class ForkliftAnswer(Answer):
         return parts | {"kinematics": self.kinematics and self.kinematics.to_dict()}
 
     def handles(self, place: float) -> Sequence[Handle]:
-        """Make handles of the truck, or of the brake, if only one of them is shown."""
+        """Make the handles of the truck if only the truck is shown, of the brake if only the brake is."""
         if self.stages == ("vehicle",) and self.stop is not None:
             return truck_handles(self.stop)
         if self.stages == ("kinematics",) and self.motion is not None:
@@ -319,7 +319,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # locked wheels may need less than the linings' friction
+            if chained is not None:  # friction is a result: locked wheels may need less than the linings have
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(
@@ -350,8 +350,8 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     model = ForkliftInput
     together = (
         "[truck] and [stop] are for the vehicle, [brake] for the kinematics, [forces] with [brake] or "
-        "[levers] for the forces; [pedal] with [line] goes with all of them, [drums] with these, [heat] "
-        "with [drums]."
+        "[levers] for the forces; [pedal] and [line] need the tables for vehicle and forces, [drums] needs "
+        "[pedal], [heat] needs [drums]."
     )
     sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums", "heat")
     example_sweep = "stop.speed=10:30:21 km/h"
@@ -359,7 +359,7 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     sketches: Callable[[], Rows] = staticmethod(tuple)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form."""
+        """Make drawings that explain the symbols of the input form."""
         return self.sketches()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:

@@ -35,7 +35,7 @@ def truck_handles(stop: Stop) -> list[Handle]:
         return Handle(label, place, lambda x, y: values(*_pair((x, y) @ back)), step=0.01, grain=1e-3)
 
     def find_empty_cg(x: float, y: float) -> dict[str, float]:
-        """Find the empty truck's centre of gravity that puts that of the loaded truck at (x, y)."""
+        """Find the empty truck's centre of gravity with which the loaded truck's lies at (x, y) [m]."""
         m, ml = float(t.empty_mass), float(t.load_mass)
         cg = ((m + ml) * np.array([x, y - r]) - ml * np.array(t.load_cg, dtype=float)) / m
         return {"truck.empty_cg_x": float(cg[0]), "truck.empty_cg_y": float(cg[1])}

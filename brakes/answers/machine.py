@@ -134,7 +134,7 @@ class MachineType(RubbingType[MachineInput]):
     draw : callable
         Makes the drawing of a result for a single case.
     sketch : callable
-        Makes drawings that explain the symbols of the form.
+        Makes drawings that explain the symbols of the input form.
     """
 
     method = "pressure and friction of each lining integrated in closed form"
@@ -153,7 +153,7 @@ class MachineType(RubbingType[MachineInput]):
         return MachineAnswer(design, design.solve()).stop_again()
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form."""
+        """Make drawings that explain the symbols of the input form."""
         return *self.sketched(), (cylinder_sketch(),)
 
     def outputs(self, design: MachineInput) -> Sequence[Output]:

@@ -31,7 +31,8 @@ WITHOUT = "without friction"
 def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
     """Describe the outputs of a mechanism: loads and travels at the end of the stroke, largest joint forces.
 
-    With friction there are also the unknown loads, squeezing and releasing.
+    Each unknown load has two further outputs, while squeezing and while releasing, which are nan without
+    friction.
     """
     loads, rubbing = [], []
     for load in mechanism.loads:
@@ -134,14 +135,14 @@ class MechanismAnswer(planar.PlanarAnswer):
         if self.friction is not None:
             return (*found, *map(in_files, self.friction.refusals))
         if self._mechanism.friction and self.last.is_determined:
-            return (*found, f"friction acts against one motion; the mobility is {self.equilibrium.mobility}")
+            return (*found, f"friction needs mobility 1; here the mobility is {self.equilibrium.mobility}")
         return found
 
     @property
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
         said = [*self.last.warnings]
-        if self.motion is not None:  # warns of toggle positions and unsuitable inputs of joints
+        if self.motion is not None:  # add warnings of toggles and doubtful inputs of joints
             said += [toggle.message for toggle in self.motion.toggles]
             angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
             said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]
@@ -226,7 +227,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         return drawings.mechanism_figure(drawn, self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
-        """Make the drawing of the mechanism as drawn and at a fraction of its stroke, from 0 to 1."""
+        """Make the drawing of the mechanism at a fraction of its stroke (0 to 1), and as drawn (in grey)."""
         return ((self._drawing(self._index_at(place)),),)
 
     def charts(self, place: float) -> Sequence[Chart]:
@@ -263,7 +264,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         drawn = drawings.open_and_closed(self.equilibrium.position, now, "\n".join((title, *captions)))
         if now.status == "self-locking":
             drawn = drawings.with_lock(drawn, now, self._mechanism.unknown_loads[-1].name)
-        points = getattr(self.design, "points", {})  # files have points; a named caliper has dimensions
+        points = getattr(self.design, "points", {})  # a named caliper has dimensions, not points
         return drawings.with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:

@@ -81,7 +81,7 @@ class FromPedal(Result):
 
         Digits in which the `doubtful` results differ, such as those with other friction, are dimmed.
         """
-        title = f"From the pedal to the wheels; the {self.braked.limited_by} limits"
+        title = f"From the pedal to the wheels; the {self.braked.limited_by} limits the braking force"
         said = f"Pedal, {self.braked.actuation.verdict}."
         stops = () if self.fade is None else stops_tables(self.fade)
         return [outputs_table(title, OUTPUTS, self, doubtful), said, *stops]
@@ -123,7 +123,7 @@ def pedal_outputs(design: ForkliftInput) -> tuple[Output, ...]:
 
 
 def solve_pedal(design: ForkliftInput) -> FromPedal:
-    """Compute forces from the pedal on, the stop and its heat, for a file that has a pedal.
+    """Compute the forces from the pedal to the wheels, the stop and its heat, for a file that has a pedal.
 
     Parameters
     ----------

@@ -55,7 +55,7 @@ def name_output(words: str) -> str:
 
 
 def select_rows(count: int) -> np.ndarray:
-    """Return the indices of the positions, of `count` in a stroke, that the table shows."""
+    """Return the indices of the positions that the table shows, of `count` positions in a stroke."""
     return evenly_spread(count, _ROWS)
 
 
@@ -89,7 +89,7 @@ def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
 
 
 def format_force(value: Any, digits: int = 5) -> str:
-    """Format a force as text; nan: statics does not determine the force, or friction jams."""
+    """Format a force as text; nan (statics does not give the force, or friction jams): "not determined"."""
     number = float(np.ravel(value)[0])
     if np.isnan(number):
         return "not determined"
@@ -97,7 +97,7 @@ def format_force(value: Any, digits: int = 5) -> str:
 
 
 def format_size(value: Any, unit: str, digits: int = 5) -> str:
-    """Format a force or moment with its unit; for nan, words without a unit."""
+    """Format a force or moment with its unit; nan gives "not determined" without a unit."""
     return format_force(value, digits) + ("" if np.isnan(value) else f" {unit}")
 
 
@@ -142,9 +142,10 @@ class MechanismFriction(Result):
         return self.over or self.drawn
 
     def locking(self, answered: bool) -> list[str]:
-        """Return a sentence on each direction of motion whose forces statics does not determine.
+        """Return a sentence on each direction of motion whose status is not "determined".
 
-        If `answered`, these are the directions whose forces are possible nevertheless, else all others.
+        If `answered`, only directions with possible forces are included, as of a self-locking mechanism; else
+        only directions without possible forces.
         """
         return [
             Words(name, ": ", way.message)
@@ -159,7 +160,7 @@ class MechanismFriction(Result):
 
     @property
     def warnings(self) -> Sequence[str]:
-        """Sentences on self-locking directions of motion, and on joints that jam at the smallest offset."""
+        """Sentences on self-locking directions of motion, and on joints that jam if a load is offset."""
         said = self.last.without.warnings
         jams = (warning for _, way in self._moving(self.last) for warning in way.warnings)
         return [*self.locking(answered=True), *dict.fromkeys(each for each in jams if each not in said)]
@@ -208,7 +209,7 @@ class MechanismFriction(Result):
             yield f"{load.name}: {', '.join(said)}"
 
     def locked(self) -> dict[str, np.ndarray]:
-        """Mark where over the stroke the mechanism locks, by the name of each curve on which it does.
+        """Return masks of the positions of the stroke at which the mechanism locks, by the name of the curve.
 
         Locking means that it jams, so that there is no force, or that the unknown load must reverse.
         """
@@ -300,7 +301,7 @@ class PlanarAnswer(Answer):
 
     @property
     def equilibria(self) -> Mapping[str, Equilibrium]:
-        """Equilibria whose bodies are drawn one by one, by heading."""
+        """Equilibria for which free-body diagrams are drawn, by the heading of the diagrams."""
         return {"": self.equilibrium}
 
     def free_bodies(self) -> Figure:

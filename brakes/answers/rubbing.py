@@ -60,9 +60,7 @@ class RubbingAnswer(Answer):
             return ()
         given, first = self.result.friction, self.fade.first_friction
         other = np.ndim(first) == 0 and abs(first - given) > 1e-9 * given
-        said = (
-            f"[heat] begins with friction {first:.4g} of its curve, [brake] has {given:.4g}" if other else ""
-        )
+        said = f"the curve in [heat] begins at friction {first:.4g}, [brake] has {given:.4g}" if other else ""
         return (*self.fade.warnings, *([said] if said else []))
 
     @property
@@ -83,7 +81,7 @@ class RubbingAnswer(Answer):
         return type(self).solver(brake or result.brake, **given | changed)
 
     def stop_again(self) -> Answer:
-        """Add the repeated stops of the file to the results, if it has any and the brake does not lock."""
+        """Return this answer with the file's repeated stops, if it has any and the brake does not lock."""
         if self.design.heat is None or np.all(self.result.locked):
             return self
         duty, result = self.design.heat.core, self.result
@@ -112,9 +110,10 @@ class RubbingAnswer(Answer):
         return f"At this force, torque {tables.format_number(torque)} N m; {said}."
 
     def doubtful(self) -> Iterator[Any]:
-        """Yield results at the same load with less and more friction, and under other pressure laws.
+        """Yield results at the file's load with less and more friction, and under other pressure laws.
 
-        A brake that then locks, of which no torque can be demanded, is at the same force.
+        If the file gives a torque, a brake that locks with the other friction or law has no result at this
+        torque. It is then solved at the actuating force of this answer.
         """
         brake, mu = self.result.brake, self.result.friction
         others = ((other, mu) for _, other in self.other_laws())
@@ -125,7 +124,7 @@ class RubbingAnswer(Answer):
                 yield self.again(varied, friction=friction)
 
     def at_load(self, brake: Any, friction: Any) -> Any:
-        """Solve another brake, or with other friction, at the load of the file."""
+        """Solve a brake with a friction coefficient at the load that the file gives."""
         given = self.design.load.given | {"reverse": self.result.reverse}
         return type(self).solver(brake, friction=friction, **given)
 
@@ -174,7 +173,7 @@ def heat_outputs(design: Any) -> tuple[Output, ...]:
 
 def stops_tables(fade: Fade) -> Iterator[RenderableType]:
     """Make two tables of repeated stops: of all stops together, and of each stop."""
-    title = f"Heat in {len(fade.end)} stops at this force, without cooling while it brakes"
+    title = f"Heat at this force; number of stops: {len(fade.end)}; no cooling while the brake acts"
     yield tables.outputs_table(title, HEAT, fade)
     names = [str(i + 1) for i in range(len(fade.end))][:_SHOWN]
     columns = [fade.start - 273.15, fade.end - 273.15, fade.end_friction, fade.angle, fade.heat]

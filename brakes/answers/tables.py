@@ -20,22 +20,26 @@ from beamdyn.common.screens.form_entries import NOT_GIVEN, default_words
 
 _SHOWN = 24  # largest number of rows of a sweep that are shown
 _ROUNDING = 1e-12  # relative difference of two results below which they count as equal
+# Size of each displayed unit in SI units.
 SCALES = {
     "mm": 1e-3,
     "deg": pi / 180,
     "kN": 1e3,
     "MPa": 1e6,
     "MW/m2": 1e6,
-}  # size of each displayed unit in SI units
+}
 
 
 def take(name: str, words: str, unit: str = "") -> Output:
-    """Make an output from the attribute of the same name, shown in a unit."""
+    """Make an output from the attribute `name` of a result, described by `words` and shown in `unit`."""
     return Output(name, words, attrgetter(name), unit, SCALES.get(unit, 1.0))
 
 
 def take_fields(kind: type, names: str) -> tuple[Output, ...]:
-    """Make outputs of a result's fields, named in one text with spaces; `Meaning` gives the words."""
+    """Make outputs of some fields of a result class, with the words and units of each field's `Meaning`.
+
+    `names` has the names of the fields, separated by spaces.
+    """
     each = ((name, meanings(kind)[name]) for name in names.split())
     return tuple(take(name, stated.words, stated.shown or stated.unit) for name, stated in each)
 
@@ -46,7 +50,7 @@ def resultant(vector: np.ndarray) -> np.ndarray:
 
 
 def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Output, ...]:
-    """Turn outputs of a result into outputs of an object with this result, which `part(object)` returns."""
+    """Turn outputs of a part of an object into outputs of the object; `part(object)` returns the part."""
     return tuple(
         Output(o.name, o.words, lambda answer, o=o: o.of(part(answer)), o.unit, o.scale) for o in outputs
     )
@@ -55,7 +59,10 @@ def take_from(part: Callable[[Any], Any], outputs: Iterable[Output]) -> tuple[Ou
 def take_from_each(
     parts: Callable[[Any], Sequence[Any]], count: int, kind: str, outputs: Iterable[Output]
 ) -> tuple[Output, ...]:
-    """Turn outputs of one part, such as a shoe, into outputs of the numbered parts of a result."""
+    """Turn outputs of a part, such as a shoe, into outputs of each of the `count` parts of an object.
+
+    ``parts(object)`` returns the parts; `kind` is the word for a part.
+    """
     return tuple(
         Output(f"{o.name}_{i + 1}", f"{o.words}, {kind} {i + 1}", o.of, o.unit, o.scale)
         for i in range(count)

@@ -88,7 +88,7 @@ def _of_stop(design: VehicleInput) -> tuple[Output, ...]:
 
 
 def _outputs(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe all outputs; names end in the axle that is downhill or leads, but for those of the lever."""
+    """Describe all outputs; names of all but the lever's end in the axle that is downhill or leads."""
     ways = tuple(
         Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)
         for axle in _AXLES
@@ -98,7 +98,7 @@ def _outputs(design: VehicleInput) -> tuple[Output, ...]:
 
 
 def _of_lever(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe the outputs of the lever; none if the file has no lever, and no pressure for a cable."""
+    """Describe the lever's outputs, without pressure if it pulls a cable; none if the file has no lever."""
     if design.lever is None:
         return ()
     return tuple(each for each in _LEVER if design.line or each.name != "pressure")
@@ -143,7 +143,7 @@ class VehicleAnswer(Answer):
     def tables(self) -> list[RenderableType]:
         """Make the tables of both directions, of wanted values that do not exist, and of the lever."""
         ways = [*self.ways.values()]
-        # Outputs left out here, because other rows and tables show them: status in words, and stop.
+        # These outputs are left out: another row has the status in words, and another table has the stop.
         elsewhere = {"holds", *(each.name for each in _SLOWING)}
         others = with_less_and_more(self.design, "road.friction", BRAKE.solve)
         doubtful = [[other.ways[axle] for other in others] for axle in self.ways]
@@ -175,7 +175,7 @@ class VehicleAnswer(Answer):
             return float(np.degrees(min(way.holding.largest_slope for way in ways)))
 
         least = min((way.holding for way in self.ways.values()), key=lambda held: float(held.largest_slope))
-        of = f"tyres on the road: Largest slope both ways, past which it {least.limited_by},"
+        of = f"tyres on the road: Largest slope both ways, past which the vehicle {least.limited_by},"
         return hangs_on_friction(self.design, "road.friction", of, largest, "deg", "none")
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
@@ -249,7 +249,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
         return VehicleAnswer(design, ways, pulled)
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the form."""
+        """Make drawings that explain the symbols of the input form."""
         return vehicle_sketch()
 
     def outputs(self, design: VehicleInput) -> Sequence[Output]:
@@ -260,7 +260,11 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
 def _solve_way(
     design: VehicleInput, axle: Axle, force: Any, pulled: Actuation | None, gain: Any
 ) -> OneDirection:
-    """Solve one direction: the axle is downhill at rest, and leads in a stop."""
+    """Solve one direction, in which `axle` is downhill at rest and leads in a stop.
+
+    `force` is the force of the lever's brakes along the ground [N], inf without a lever; `pulled` are the
+    forces from the lever to the brakes; `gain` is the braking force over the force on each actuator.
+    """
     standing, road, braking = design.standing, design.road.core, design.braking
     holding = vehicle.hold(standing, road, braking.parked_by, axle, force)
     needs = {"friction_to_hold": vehicle.friction_to_hold(standing, road.slope, braking.parked_by, axle)}

@@ -116,10 +116,10 @@ def groups(entries: Mapping[str, str]) -> list[ListGroup]:
     joints, loads = ({kind.key(): kind.kind() for kind in kinds} for kinds in (JOINTS, LOADS))
     parts = [_item(key, i, part, tables) for key, i, part in _parts(tables)]
     of_joints, of_loads = ([part for part in parts if part.path in keys] for keys in (joints, loads))
-    free = "Forces and springs. One without magnitude is found by equilibrium."
+    free = "Forces and springs. If a force has no magnitude, equilibrium determines it."
     drawn = "Points where joints and loads act. Drag them in the drawing."
     each = (
-        ("Bodies", "What moves. The ground is there by itself.", bodies, {"body": "body"}),
+        ("Bodies", "What moves. The ground always exists.", bodies, {"body": "body"}),
         ("Points", drawn, points, {"point": "point"}),
         ("Joints", "They hold bodies together, or to the ground.", of_joints, joints),
         ("Loads", free, of_loads, loads),
@@ -236,7 +236,10 @@ def _renamed(value: Any, old: str, new: str) -> Any:
 def _with_references(
     tables: dict[str, Any], names: Iterable[str], keys: Sequence[str], old: str, new: str
 ) -> dict[str, Any]:
-    """Replace a name where a key of `keys` has it as value, in the tables (or lists of them) `names`."""
+    """Replace the name `old` by `new` wherever it is the value of one of `keys`.
+
+    This is done in the tables, or lists of tables, that `names` lists.
+    """
 
     def changed(table: Any) -> Any:
         if isinstance(table, list):
@@ -369,7 +372,7 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
     try:
         core = mechanism_from_dict({**tables, "run": _without(run, "driver", "travel")}, "mechanism").core
     except (ConfigError, ValueError):
-        return  # the form shows mistakes beside its fields
+        return  # no advice: the form shows mistakes beside its fields
     if not isinstance(core, Mechanism):
         return
     free = core.system.size - core.system.constraints
@@ -377,12 +380,12 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
     unknown = sum(getattr(load, "magnitude", 0.0) is None for load in core.loads)
     if free > unknown:
         yield (
-            f"{len(core.bodies)} bodies have {core.system.size} freedoms; the joints take "
-            f"{core.system.constraints}, loads without magnitude {unknown}. Add a joint, or a force without "
+            f"Degrees of freedom of the bodies: {core.system.size}; constraints of the joints: "
+            f"{core.system.constraints}; loads without magnitude: {unknown}. Add a joint, or a force without "
             "magnitude."
         )
     elif free < unknown:
-        yield f"{unknown} loads have no magnitude, {free} can be found: give magnitudes, or remove a joint."
+        yield f"Unknown loads: {unknown}; degrees of freedom: {free}. Give magnitudes, or remove a joint."
     elif free == 1 and not (run.get("driver") and run.get("travel")):
         yield "To see it move, choose the load that drives the stroke, and its travel."
 

@@ -37,7 +37,7 @@ HEADINGS = {
 def make_document(
     brake: BrakeType[Any], screens: tuple[Screen, ...] = (), check: Callable[[str, str], object] | None = None
 ) -> Document:
-    """Make a document of a type of brake, which opens with the example of its name.
+    """Make a document of a type of brake, which opens with the example file that has the brake's name.
 
     Parameters
     ----------
@@ -46,8 +46,8 @@ def make_document(
     screens : tuple of Screen
         Screens of the document; by default the screen of the type of brake.
     check : callable, optional
-        ``check(text, name)`` raises `ConfigError` if a file is not for this document; by default the
-        commands' check.
+        ``check(text, name)`` raises `ConfigError` if a file is not for this document; by default it
+        is checked as by the commands.
     """
 
     def accept(text: str, source: str) -> object:
@@ -99,7 +99,7 @@ def make_screen(brake: BrakeType[Any], *more: FoldedPart) -> Screen:
         headline=lambda answer: [*brake.headline(answer)],
         sketch=brake.sketch,
         branches=lambda answer: answer.branches(),
-        effort="It takes longer with more positions of the stroke, and with friction in more joints.",
+        effort="The solution takes longer with more positions of the stroke and more joints with friction.",
     )
 
 
@@ -134,7 +134,7 @@ def _make_backwards(brake: BrakeType[Any]) -> Backwards:
 
 
 def _as_printed(answer: ForkliftAnswer) -> str:
-    """Make an HTML table of the results beside the printed results of the paper's stop."""
+    """Make an HTML table of the results beside those by the paper's equations of the stop, as printed."""
     printed = answer_as_printed(answer.design, answer.stages) or answer
     rows = list_outputs(stage_outputs(answer.stages), [answer, printed])
     return html([table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))])
@@ -154,7 +154,7 @@ def check_caliper(text: str, source: str) -> CaliperInput:
     """Parse the file of a named caliper; raises `ConfigError` if it describes another mechanism."""
     design = parse_mechanism(text, source)
     if not isinstance(design, CaliperInput):
-        raise ConfigError(source, ["caliper: missing; a mechanism of parts has a screen of its own"])
+        raise ConfigError(source, ["caliper: missing; a mechanism of bodies has a screen of its own"])
     return design
 
 

@@ -104,7 +104,7 @@ class Caliper:
         Raises
         ------
         OutOfReachError
-            If the caliper does not close so far.
+            If the motion of the caliper ends before the pads touch.
         """
         try:
             return driver_at_travel(self.free, self.cable, dict.fromkeys(self.pads, -0.5), self.clearance)
@@ -115,7 +115,7 @@ class Caliper:
             ) from None
 
     def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:
-        """Order the travels of the two pads at S positions, shape (S, 2), positive towards the rim."""
+        """Return the travels of the right and left pad at S positions, (S, 2) [m], positive to the rim."""
         return -np.stack([travel[name] for name in self.pads], axis=-1)
 
     # Forces -----------------------------------------------------------------------------------------
@@ -140,9 +140,9 @@ class Caliper:
         Raises
         ------
         AssemblyError, OutOfReachError
-            If the drawing cannot be assembled, or the mechanism does not go so far.
+            If the joints of the drawing cannot be brought together, or the mechanism does not reach a travel.
         ValueError
-            If the mechanism does not have one motion.
+            If the mobility of the mechanism is not 1.
         """
         travel = self.contact if travel is None else travel
         if np.ndim(travel) == 0:
@@ -170,7 +170,7 @@ class Caliper:
         """Compute all forces at a travel of the cable [m], by default at contact, for free-body diagrams."""
         position = stroke(self.free, self.cable, [self.contact if travel is None else travel]).position
         tension = self.lever_ratio * positive("finger", finger, "N")
-        # Without centring joints `split` fixes the force of the right pad.
+        # Without centring joints `split` fixes the force of the right pad; with them it is unknown (nan).
         force = np.nan if self.centring else float(self._forces(position, tension)["pad_force"][0, 0])
         return self._at(position[0], tension, force)
 

@@ -75,7 +75,7 @@ class Design:
 
 @dataclass(frozen=True, kw_only=True)
 class EeBrake(Design):
-    """The eeBrake, reconstructed: two levers on the panel, which a strut and a link keep in step.
+    """The eeBrake, reconstructed: two levers, which a strut and a link keep in step, on a fixed panel.
 
     Parameters
     ----------
@@ -145,8 +145,8 @@ class SinglePivot(Design):
     Parameters
     ----------
     bolt, pad : tuple of 2 floats
-        The mount bolt, on which both arms turn, and the point where the rim's force acts on the right pad,
-        whose mirror image is that of the left pad [m].
+        The mount bolt, on which both arms turn, and the point where the rim's force acts on the right pad
+        [m]. The point of the left pad is its mirror image.
     clamp, housing : tuple of 2 floats
         Cable clamp on the arm of the right pad, and housing stop on the arm of the left pad [m].
 
@@ -175,7 +175,7 @@ class SinglePivot(Design):
 
 @dataclass(frozen=True, kw_only=True)
 class DualPivot(Design):
-    """Dual-pivot side-pull: one arm turns on the mount bolt, one beside it; a roller keeps them in step.
+    """Dual-pivot side-pull: one arm turns on the mount bolt, the other beside it; a roller couples them.
 
     Parameters
     ----------
@@ -225,8 +225,8 @@ class CentrePull(Design):
     Parameters
     ----------
     pivot, pad, hook : tuple of 2 floats
-        Pivot of the right arm, point where the rim's force acts on its pad, and its end of the straddle
-        cable, on the other side of the middle [m].
+        Pivot of the right arm, point where the rim's force acts on its pad, and the hook at which the arm
+        holds the straddle cable, on the other side of the wheel's mid-plane [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
 
@@ -256,8 +256,8 @@ class Cantilever(Design):
     Parameters
     ----------
     pivot, pad, hook : tuple of 2 floats
-        Boss of the right arm, point where the rim's force acts on its pad, and its end of the straddle cable
-        [m].
+        Boss of the right arm, point where the rim's force acts on its pad, and the hook at which the arm
+        holds the straddle cable [m].
     yoke, stop : tuple of 2 floats
         The yoke on the straddle cable, and the stop of the main cable's housing above it [m].
 

@@ -140,9 +140,9 @@ class PivotFriction(Result):
     cable : float
         Travel of the cable [m].
     tension, squeezing_tension, releasing_tension : float
-        Tension of the cable that gives the same pad forces without friction, while the lever is squeezed, and
-        while it is released [N].  Negative if the cable would have to push the brake open, nan if the
-        brake jams.
+        Tension of the cable for the same pad forces in three cases: without friction, with friction while the
+        lever is squeezed, and with friction while it is released [N].  Negative if the cable would have to
+        push the brake open, nan if the brake jams.
     squeeze : float
         Efficiency while the lever is squeezed: tension without friction over tension with it.
     release : float

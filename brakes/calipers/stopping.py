@@ -83,7 +83,8 @@ class Stance:
         ----------
         lift : float
             Factor (M h + J / R) / (M h) by which the wheels' inertia increases the moment that lifts the
-            wheel.
+            wheel. M is the mass, h the height of the centre of gravity, J the moment of inertia of all
+            wheels, and R their radius.
         """
         return GRAVITY * self.cg_behind_front / (self.cg_height * lift)
 
@@ -95,7 +96,8 @@ class Stance:
         lift : float
             As for `pitch_limit`.
         inertia : float
-            Factor (M + J / R^2) / M by which the wheels' inertia increases the mass.
+            Factor (M + J / R^2) / M by which the wheels' inertia increases the mass, with the symbols of
+            `pitch_limit`.
         """
         mu, length, x = self.tyre_friction, self.wheelbase, self.cg_behind_front
         moved = mu * self.cg_height * lift
@@ -178,7 +180,8 @@ def stop(
     """Compute a stop on level ground by the pads on one rim, within the limits of grip and pitching over.
 
     With the force F on each of two pads, E = (M + J / R^2) v^2 / 2 = integral of 2 mu F (r / R) ds over the
-    stopping distance. For constant F, no inertia and r = R this is M v^2 = 4 mu F L (as on the eeBrake page).
+    stopping distance. For constant F, no inertia and r = R this is M v^2 = 4 mu F L, with
+    the stopping distance L (as on the eeBrake page).
     The rider does not squeeze harder than grip and pitching over allow.
 
     Parameters
@@ -278,9 +281,10 @@ def _radius_ratio(rim_radius: float | None, tyre_radius: float | None) -> float:
 
 
 def _integrated(energy: float, factor: float, force: Callable[[float], float]) -> np.ndarray:
-    """Compute the distances [m] in which a force that depends on distance absorbs energies [J].
+    """Compute the distances [m] at which the brake has absorbed energies E from 0 to `energy` [J].
 
-    The function integrates ds/dE = 1/(factor F(s)); the last distance is inf if the force F vanishes before.
+    The pad force F = ``force(s)`` [N] depends on the distance s, and the braking force is `factor` times F.
+    The function integrates ds/dE = 1/(factor F(s)). If F vanishes before, the last distance is inf.
     """
     from scipy.integrate import solve_ivp
 

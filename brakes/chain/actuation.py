@@ -219,6 +219,6 @@ def _ends(pedal: Pedal, line: Line, output: Numbers, travel: Numbers) -> tuple[t
     over = output > line.limit * (1 + EDGE)
     far = travel > (np.inf if pedal.travel is None else pedal.travel * (1 + EDGE))
     return (
-        (over, "the line would exceed the pressure of its cylinders, which rises with the force"),
+        (over, "the pressure, which rises with the force, would exceed the largest that the cylinders bear"),
         (far, "the pedal reaches the end of its travel first; a higher ratio or force needs more travel"),
     )

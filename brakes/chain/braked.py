@@ -50,7 +50,7 @@ class WheelBrakes:
     3.0
     """
 
-    c_star: Annotated[Numbers, Described("", "C*", "torque over actuator's force times drum radius", above=0)]
+    c_star: Annotated[Numbers, Described("", "C*", "torque / (actuator force times drum radius)", above=0)]
     drum_radius: Annotated[Numbers, Described("m", "r", "radius at which the linings rub", above=0)]
     wheel_radius: Annotated[Numbers, Described("m", "r_w", "radius of the braked wheels", above=0)]
     number: Annotated[Numbers, Described("", "n", "number of brakes", least=1, whole=True)] = 2.0
@@ -125,7 +125,7 @@ class BrakedStop(Result):
 
     @property
     def least_friction(self) -> Numbers:
-        """Least tyre friction with which locked wheels stop the truck; nan if none of 2 or less does."""
+        """Least tyre friction with which locked wheels stop the truck; nan if more than 2 is needed."""
         return self.friction.value
 
 
@@ -159,7 +159,7 @@ def brake_from_pedal(
 
     References
     ----------
-    Yoo et al. (1997), section 2, with the smaller one of two forces.
+    Yoo et al. (1997), section 2, with the smaller of the forces that brakes and road can give.
 
     Examples
     --------

@@ -1,15 +1,17 @@
 """Energy of a stop into drums and tyres, the temperature of the drums, and fading by repeated stops.
 
-From the moment the brakes act, the braking force does the work m V^2 / 2 + m g sin(beta) s along the ground.
+A truck of the mass M brakes from the speed V on a slope of the angle beta. From the moment the brakes act,
+the braking force does the work M V^2 / 2 + M g sin(beta) s along the distance s on the ground.
 While the force rises the wheels still roll, and the brakes take this work; at full force the brakes take it
 if the wheels roll, and the sliding tyres if they are locked. The speed is constant in the reaction time, and
-what holds it (the engine) is left out. The drums are not cooled during the stop: each warms by energy / (m
-c).
+what holds it (the engine) is left out. The drums are not cooled during the stop: a drum of the mass m and the
+specific heat c warms by its part of the energy over m c.
 
-In repeated stops each front brake stops half the mass from the speed V, J = M r^2 / 2 and w = V / r at a
-wheel of radius r, while the slope drives on with L = M g sin(beta) r / 2. Its torque is the smaller of what
-the brake gives at the pedal's force and of what locks the wheel: the driver eases off before the wheels
-slide, so that all heat goes into the drums. While the force rises, a wheel turns farther than at full force:
+In repeated stops each front brake stops half of the truck's mass: at a wheel of the radius r this is the
+moment of inertia J = M r^2 / 2 with the angular speed w = V / r, while the slope drives the wheel with the
+torque L = M g sin(beta) r / 2. The torque of the brake is the smaller of what the brake gives at the pedal's
+force and of what locks the wheel: the driver eases off before the wheels slide, so that all heat goes into
+the drums. While the force rises, a wheel turns farther than at full force:
 by the angle that makes the heat of a stop with unfaded linings equal the energy of that stop. Uphill the help
 of the slope is left out, as if the road were level: this overestimates the temperature.
 """
@@ -257,9 +259,10 @@ def fade_of_stops(
 
 
 def _free_way(stop: Stop) -> np.ndarray:
-    """Compute the distance [m] that a truck rolls before a sudden full force replaces a gradual rise.
+    """Compute the distance [m] that a truck rolls freely before its full braking force acts at once.
 
-    The stop then has the length and the heat of a stop with the gradual rise.
+    A braking force that rises gradually is replaced by this one, such that the stop has the same length and
+    the same heat.
     """
     way = np.where(stop.stops, stop.rise_distance + stop.braking_distance, np.nan)
     return np.nan_to_num(np.maximum(way - heat_of_stop(stop).energy / stop.brake_force, 0.0))

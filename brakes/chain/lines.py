@@ -126,7 +126,7 @@ class BrakeCable:
     """
 
     cable_gain: Annotated[
-        Numbers, Described("", "i_c", "force on each brake's actuator over that in the cable", above=0)
+        Numbers, Described("", "i_c", "force on each brake's actuator / force in the cable", above=0)
     ]
     efficiency: Annotated[
         Numbers,

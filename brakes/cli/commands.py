@@ -72,7 +72,8 @@ class FindOptions:
         file; or, with bounds and a number of samples, between these: "brake.friction=0.1:0.6:51"; for whole
         numbers, each one between the bounds is tried.
     so_that : str, optional
-        The result that the input shall give, such as "torque = 300 N m"; a wrong name lists all.
+        The result that the input shall give, such as "torque = 300 N m"; with a wrong name,
+        all names are listed.
     """
 
     find: Annotated[str | None, Parameter(show_default=False)] = None
@@ -108,7 +109,8 @@ class Asked:
     finding : FindOptions
         The input that is sought.
     what : str, optional
-        Results with --vary or --spread, separated by commas; without these, the --csv file lists all names.
+        Results to show with --vary or --spread, separated by commas; the --csv file of a run without these
+        options lists the names of all results.
     """
 
     varying: VaryOptions = NOTHING_VARIED
@@ -165,14 +167,15 @@ def run_command(
     outputs : Outputs
         Files to write.
     further : mapping, optional
-        Further options that name a file to write: its path, if given, and the function that writes it.
+        Further files to write, by the name of the option: the file's path, if the option is given, and the
+        function that writes it.
     **options
         Options of the command that the HTML report repeats.
 
     Raises
     ------
     NoAnswer
-        If the model has no answer; what there is has been shown.
+        If the model has no answer; it is raised after the available results have been shown.
     ValueError
         For bad input.
     """
@@ -239,7 +242,7 @@ def _answer_many(
             how = {"combine": varying.combine, "run": run}
             made, warnings = brake.sweep(tables, file, varying.vary, asked.what, **how)
             answered = any(np.isfinite(values).any() for values in made.found)
-            none = f"at none of {made.designs.count} values is there an answer"
+            none = f"there is no answer for any of {made.designs.count} designs"
     return made, warnings, "" if answered else none
 
 
@@ -270,8 +273,9 @@ def caliper(
 ) -> None:
     """Forces, travels and mechanical advantage of a caliper.
 
-    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
-    statics does not determine and which contacts open, and then ends with code 1.
+    With friction, there are three sets of forces: without friction, while squeezing, and while releasing. The
+    command says which bodies are loose, which reactions statics does not determine and which contacts open,
+    and then ends with code 1.
 
     Parameters
     ----------
@@ -283,7 +287,7 @@ def caliper(
     animation
         Write an animation of the stroke: .gif.
     asked
-        What is asked of many designs.
+        Options that ask about many designs: variations, tolerances, or an inverse question.
     list_
         List the named calipers and their dimensions; needs no MECHANISM.
     outputs
@@ -298,7 +302,7 @@ def caliper(
         for name, value in given.items():
             if value:
                 text = ", ".join(map(str, value)) if isinstance(value, tuple) else value
-                says = "--list shows the named calipers alone; leave one of the two out"
+                says = "--list only lists the named calipers; leave one of the two out"
                 raise ValueError(f"{name} = {text}: {says}")
         show(names_tables())
         return
@@ -322,19 +326,20 @@ def mechanism(
 ) -> None:
     """Every force in a planar mechanism of bodies, joints and loads, as drawn and over a stroke.
 
-    With friction, forces without it, squeezing and releasing. Says which bodies are loose, which reactions
-    statics does not determine and which contacts open, and then ends with code 1.
+    With friction, there are three sets of forces: without friction, while squeezing, and while releasing. The
+    command says which bodies are loose, which reactions statics does not determine and which contacts open,
+    and then ends with code 1.
 
     Parameters
     ----------
     file
-        The mechanism, part by part, or a caliper; `brakes keys mechanism` lists all keys.
+        TOML file of a mechanism, part by part, or of a caliper; `brakes keys mechanism` lists all keys.
     free_bodies
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
         Write an animation of the stroke: .gif.
     asked
-        What is asked of many designs.
+        Options that ask about many designs: variations, tolerances, or an inverse question.
     outputs
         Files to write.
     """
@@ -374,11 +379,11 @@ def forklift(
     Parameters
     ----------
     file
-        The truck, the stop, and one of its brakes; `brakes keys forklift` lists all keys.
+        TOML file of the truck, the stop and one of the brakes; `brakes keys forklift` lists all keys.
     stage
         Stage to show; the stages before it are computed if they are needed.
     asked
-        What is asked of many designs.
+        Options that ask about many designs: variations, tolerances, or an inverse question.
     outputs
         Files to write.
     """
@@ -411,7 +416,7 @@ def keys(brake: Annotated[str, Parameter(name="COMMAND")], /) -> None:
 
 @app.command(help_epilogue=examples("brakes reproduce --output pictures"))
 def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
-    """Published numbers of brakes beside ours, consequences of the papers' errors, and the pictures.
+    """Published numbers of brakes beside computed ones, consequences of the papers' errors, and pictures.
 
     Parameters
     ----------
@@ -451,7 +456,7 @@ def add_standard(name: str, help: str, load: Callable[[], BrakeType[Any]]) -> No
         file
             The TOML file that describes the brake; `brakes keys` lists its keys.
         asked
-            What is asked of many designs.
+            Options that ask about many designs: variations, tolerances, or an inverse question.
         outputs
             Files to write.
         """

@@ -43,7 +43,7 @@ def stop_energy(
     Raises
     ------
     ValueError
-        If a value is out of bounds, the final speed is not below the first, or the radius is missing.
+        If a value is out of bounds, the final speed is not below the initial one, or the radius is missing.
 
     References
     ----------
@@ -93,7 +93,7 @@ def temperature_rise(
 
     References
     ----------
-    Standard: all energy stays in the drum, of one temperature.
+    Standard: all energy stays in the drum, which has the same temperature everywhere.
 
     Examples
     --------

@@ -27,14 +27,14 @@ from brakes.common.solutions import Gap, Piece, Solutions, WholeSolutions, step
 
 _EPS = np.finfo(float).eps
 _SURE = 1e-13  # relative difference from the wanted value that counts as rounding
-# Fraction of an answer's change over the bracket of a root by which a continuous answer may differ from the
-# wanted value at the root.
+# An answer jumps at a root if it differs there from the wanted value by more than this fraction of its change
+# over the bracket of the root.
 _JUMP = 1e-6
 # Relative width of the bracket of a turning point; in a narrower one rounding hides the turning point.
 _TURN = 1e-9
 # Relative width of the bracket of the last input with an answer, or of the end of a level part of the answer.
 _EDGE = 1e-13
-# Distance from the end of a piece, over that bracket, within which the answer's change counts as its error.
+# The error of an answer at the end of a piece is its change over this many widths _EDGE of the end's bracket.
 _ROUNDED_ENDS = 4
 # Parts into which each refinement divides the bracket of a turning point, and of an edge.
 _PARTS, _FEW_PARTS = 16, 4
@@ -271,7 +271,10 @@ def _piece(curve: Curve) -> Piece:
 
 
 def _piece_with_errors(answers: _Answers, curve: Curve) -> Piece:
-    """Make a piece whose answers change by their errors when its ends move inwards by their rounding."""
+    """Make a piece, with the errors of the answers at its ends.
+
+    An error is the change of the answer when the end moves inwards by a few times its own uncertainty.
+    """
     made, width = _piece(curve), _ROUNDED_ENDS * _EDGE * float(np.abs(curve[0]).max())
     moved = answers(np.array([min(made.start + width, made.end), max(made.end - width, made.start)]))
     first, last = np.abs(moved - [made.first, made.last]).tolist()
@@ -350,9 +353,9 @@ def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
 
 
 def _unrounded(pieces: Sequence[Curve], target: float, rounding: float) -> float:
-    """Return the answer of a level piece that equals the wanted value within its rounding [answer's unit].
+    """Return the answer of the level piece nearest to the wanted value, if they differ by its rounding only.
 
-    The nearest such answer is returned; if there is none, the wanted value.
+    Otherwise the wanted value itself is returned [both in the answer's unit].
     """
     heights = [float(y[0]) for _, y in pieces if step(y[0], y[-1]) == 0]
     nearest = min(heights, key=lambda height: abs(height - target), default=target)
@@ -376,7 +379,7 @@ def _solve(
             )
             (jumps if jumped else found).append(root)
         found += ends
-    # The ends of ranges are uncertain by `near`.
+    # Solutions within level ranges, whose ends are uncertain by `near`, are left out.
     alone, near = np.unique(found), 2 * _EDGE * np.abs(ranges)
     low, high = (ranges + near * np.array([-1, 1])).T[..., None]
     return alone[~np.any((alone >= low) & (alone <= high), axis=0)], np.unique(jumps)

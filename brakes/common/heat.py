@@ -2,7 +2,9 @@
 
 A stop converts kinetic energy, and the work of a driving load, to heat of a mass with the heat capacity
 C = m c. It has one temperature T and cools between the stops only. With the torque M(T) at a constant
-actuating force, an angle dq of rotation heats it by C dT = M dq. So energy alone decides how hot a stop ends,
+actuating force, an angle dq of rotation heats it by C dT = M dq. So energy alone decides how hot a stop ends:
+for the moment of inertia J, its angular speed w before the stop, the torque L of the load, and the angle q of
+rotation,
 
     T1 = T0 + (J w^2 / 2 + L (q + q0)) / C,    q = C int dT / M(T) from T0 to T1,
 
@@ -12,7 +14,8 @@ the iteration from T0 rises and is bounded by the least fixed point, the one tha
 fixed point exists if the torque stays above the load on the way: T1 - L q / C then increases, and T1 is
 bracketed.
 Where the lining's torque fades to that of the load before, the brake never stops the load. Between stops T -
-T_a falls by exp(-h t / C). Without a load each stop heats by J w^2 / (2 C): the temperatures of the stops
+T_a falls by exp(-h t / C), with the temperature T_a of the surroundings, the heat flow h per kelvin, and the
+time t. Without a load each stop heats by J w^2 / (2 C): the temperatures of the stops
 follow an affine map, which contracts by exp(-h t / C) and so has one limit.
 """
 
@@ -124,9 +127,8 @@ class Duty:
         if self.friction_curve is not None:
             curve = np.asarray(self.friction_curve)
             self._check(curve)
-            set_fields(
-                self, friction_curve=tuple(map(tuple, curve.tolist()))
-            )  # tuples can be compared, arrays cannot
+            # Tuples make instances comparable; arrays do not.
+            set_fields(self, friction_curve=tuple(map(tuple, curve.tolist())))
 
     def _check(self, curve: np.ndarray) -> None:
         if curve.ndim != 2 or curve.shape[1] != 2 or len(curve) < 2:
@@ -224,7 +226,7 @@ class Fade(Result):
         if np.ndim(self.status) == 0:
             return tuple(self.messages_of_cases(1).values())
         found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
-        return tuple(f"{words}, in {np.sum(self.status == status)} cases" for status, words in found)
+        return tuple(f"{words} (cases: {np.sum(self.status == status)})" for status, words in found)
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
         """Return by case index which stop has no result, and why; `count` is the number of cases."""
@@ -255,7 +257,7 @@ def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
 
 _WORDS = {
     "never stops": "the brake gives less than load_torque or a slope, at once or by fading: it never stops",
-    "too hot": "the brake gets hotter than the last temperature of friction_curve: give more of the curve",
+    "too hot": "the brake gets hotter than the last temperature of friction_curve: extend the curve",
 }
 TorqueAt = Callable[[Numbers], Numbers]
 
@@ -343,10 +345,11 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
     high = np.where(np.isfinite(path.last), path.last, most)
 
     def over(end: np.ndarray) -> np.ndarray:
-        """Return whether the stop ends, or the torque fades to the load's, below a temperature [K]."""
+        """Return whether below a temperature [K] the stop ends or the torque fades to that of the load."""
         return path.stopped(start, end) | (path.least(start, end) <= load)
 
-    # Without a curve the stop ends at `most`, which rounding may put just past `high`.
+    # Only a stop with a friction curve can be too hot. Without a curve the stop ends at `high`, but rounding
+    # may make over(high) false.
     hot = np.isfinite(path.last) & ((low > high) | ~over(high))
     high = np.where(hot | over(low), low, high)
     parts = _PARTS if start.size <= _MOST_AT_ONCE else 2

@@ -15,7 +15,7 @@ def take_load(**given: Numbers | None) -> tuple[str, Numbers]:
     Raises
     ------
     ValueError
-        Unless exactly one load is given, above zero.
+        If not exactly one load is given, or the load is not positive.
     """
     present = {name: value for name, value in given.items() if value is not None}
     if len(present) != 1:

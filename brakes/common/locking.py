@@ -58,15 +58,15 @@ class RubbingResult(SlidesOrLocks):
     torque, peak_pressure : ndarray
         Torque of the brake [N m], largest pressure on any lining [Pa]; nan where the brake locks.
     c_star, c_star_slope : ndarray
-        Brake factor torque / (force radius), and its derivative with respect to the friction.
+        Brake factor torque / (force * radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Friction at self-locking, margin to this, and whether the brake locks.
+        Friction at self-locking; the margin 1 - friction / locking_friction; whether the brake locks.
     """
 
     friction: Numbers
     torque: Annotated[Numbers, Meaning("N m", "torque of the brake")]
     peak_pressure: Annotated[Numbers, Meaning("Pa", "largest pressure on a lining", "MPa")]
-    c_star: Annotated[Numbers, Meaning("", "brake factor C* = torque / (force radius)")]
+    c_star: Annotated[Numbers, Meaning("", "brake factor C* = torque / (force * radius)")]
     c_star_slope: Annotated[Numbers, Meaning("", "dC*/dmu")]
     locking_friction: Annotated[Numbers, Meaning("", "friction at self-locking")]
     margin: Annotated[Numbers, Meaning("", "margin to self-locking, 1 - mu / locking mu")]

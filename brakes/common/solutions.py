@@ -46,7 +46,7 @@ class Piece:
     first, last : float
         Answers at `start` and at `end`.
     first_error, last_error : float
-        How much these answers change by a change of the input within its rounding: much beside a pole.
+        Change of these answers when the input changes within its rounding error; large beside a pole.
     """
 
     start: float
@@ -159,7 +159,7 @@ class Solutions(Result):
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentence that there may be more solutions; empty if the pieces have settled."""
-        count = f"the pieces of {self.output} still change with {len(self.samples)} samples"
+        count = f"the rising and falling ranges of {self.output} still change at {len(self.samples)} samples"
         return () if self.settled else (f"{count}: there may be more solutions; give a narrower range",)
 
     @property
@@ -194,7 +194,7 @@ class Solutions(Result):
     def _reasons(self) -> Iterator[str]:
         """Yield the reasons why the answer does not reach the wanted value."""
         yield from self._extremes() if self.pieces else ()
-        yield from (f"it jumps past at {self.input} = {self._input(each)}" for each in self.jumps)
+        yield from (f"it jumps past the wanted value at {self.input} = {self._input(x)}" for x in self.jumps)
         yield from self.lacking if self.pieces else (gap.reason for gap in self.gaps)
 
     def _extremes(self) -> Iterator[str]:

@@ -55,7 +55,7 @@ class ShoeInput(MadeSection):
 
     @property
     def given(self) -> dict[str, Any]:
-        """The arguments of `Shoe`; its pin has y = -depth."""
+        """The arguments of `Shoe` that this table gives; the pin is at y = -depth."""
         given = super().given
         offset, depth = given["pivot"]
         return given | {"pivot": (offset, -depth)}
@@ -101,7 +101,7 @@ class DrumInput(CoreSection):
         try:  # inputs that [second_shoe] leaves out are those of the first shoe
             second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None
         except InvalidValue as error:
-            between = ": " if " " in error.field else "."  # a text with a space is not a key
+            between = ": " if " " in error.field else "."  # a text with a space is no key of the file
             raise replace(error, field=f"second_shoe{between}{error.field}") from None
         if self.brake.assembly == "single":
             if self.second_shoe is not None:

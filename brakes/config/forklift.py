@@ -59,7 +59,7 @@ def forklift_from_dict(data: Mapping[str, Any], source: str = "forklift") -> For
 class DuoServoInput(MadeSection):
     """Table [brake] of a file: geometry of a duo-servo brake's right side at rest; the left is its mirror."""
 
-    if TYPE_CHECKING:  # `DuoServo.move_shoes` describes this input
+    if TYPE_CHECKING:  # a field made from the argument of `DuoServo.move_shoes`
         clearance: float
 
     @property
@@ -125,7 +125,7 @@ class ForcesInput(Section):
 class ForkliftInput(Section):
     """File of a forklift's brakes: [truck] and [stop], [brake] or [levers], [forces], for the stages wanted.
 
-    [pedal], [line], [drums] and [heat] need the tables of all stages.
+    [pedal], [line], [drums] and [heat] need the tables of the stages vehicle and forces.
     """
 
     truck: _TruckInput | None = None
@@ -166,7 +166,7 @@ class ForkliftInput(Section):
                 "[forces] with lining_friction, and [brake] or [levers]"
             )
         if self.heat and not self.drums:
-            raise ValueError("[heat] goes with [drums], which it warms: give them")
+            raise ValueError("[heat] needs [drums], the drums that are heated: give [drums]")
         if f.piston_force is not None or f.torque is not None or f.lining_friction is None:
             raise ValueError(
                 "[forces]: with [pedal] give lining_friction alone: piston_force and torque follow from it"

@@ -62,7 +62,7 @@ class CurveQuantity(Quantity):
 
     @property
     def bounds(self) -> str:
-        """An example of rows, for messages."""
+        """An example of rows, which messages show in place of bounds."""
         return _SUCH_AS
 
     def parse(self, given: object) -> Any:
@@ -74,7 +74,8 @@ class CurveQuantity(Quantity):
 
 _TABLES = {FrictionCurve: CurveQuantity}
 _OF_A_STOP = ("inertia", "speed", "heated_mass", "specific_heat", "load_torque", "free_angle", "most_pv")
-REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)  # keys of [heat] in a file that describes the stop itself
+# Keys of [heat] in a forklift's file, where other tables describe the stop, so that `_OF_A_STOP` is left out.
+REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)
 
 if TYPE_CHECKING:
     HeatInput = CoreSection

@@ -81,7 +81,10 @@ SECTIONS = {  # sections by the name of the table
 
 
 class RolesInput(Section):
-    """Table [caliper] of a mechanism: centring joints; `_Roles` adds the inputs that `Caliper` describes."""
+    """Table [caliper] of a mechanism's file: names of its centring joints.
+
+    A class derived from this one adds the cable, the pads and the other inputs of `Caliper`.
+    """
 
     centring: Annotated[list[str], Field(description="joints that hold only until the pads touch")] = []  # noqa: RUF012
 
@@ -95,7 +98,7 @@ class MechanismInput(config.CoreSection):
     model_config = SHORT_TEXTS
 
     title: Annotated[str, Field(description="title")] = "mechanism"
-    bodies: Annotated[list[str], Field(description="names of the bodies; the ground is there by itself")]
+    bodies: Annotated[list[str], Field(description="names of the bodies; the ground always exists")]
     points: dict[str, Point] = {}  # noqa: RUF012
     caliper: RolesInput | None = None
     run: RunInput = RunInput()
@@ -117,9 +120,9 @@ class MechanismInput(config.CoreSection):
                 raise InvalidInput("run.friction", friction, bound) from None
             made = Mechanism(tuple(self.bodies), tuple(joints), tuple(loads))
             if friction and not made.friction:
-                bound = "it is that of pins, and there are no pins; give friction at the slot or contact"
+                bound = "it is for pins, and there are no pins; give friction at the slot or contact"
                 raise InvalidInput("run.friction", friction, bound)
-            rubs = made.friction or "friction" in self.run.model_fields_set  # friction may be 0 in a sweep
+            rubs = made.friction or "friction" in self.run.model_fields_set  # a sweep may include friction 0
             if self.run.driver is not None and self.run.travel is None and not rubs:
                 remedy = "give the travel of the driver, or leave out driver"
                 raise config.MissingValue("run.travel", None, remedy)
@@ -189,7 +192,8 @@ def _with_points(data: Mapping[str, Any]) -> dict[str, Any]:
 # Descriptions of the inputs of calipers and mechanisms for forms and sweeps, and calipers as TOML -------
 
 
-PARTS: dict[str, str] = {}  # kind of part with its required and optional keys, as help text, by table
+# Help text of each kind of joint or load, by the name of its table: its required, then its optional keys.
+PARTS: dict[str, str] = {}
 for _part in (*JOINTS, *LOADS):
     _keys: dict[bool, list[str]] = {True: [], False: []}
     for _key, _described in descriptions(_part).items():

@@ -21,7 +21,7 @@ _SHARE = Quantity("", "phi", _OF_FRONT, least=0, most=1, remedy="60 % is 0.6")
 
 
 class BrakingInput(Section):
-    """Table [braking] of a file: the front wheels' share of the force, and the wheels that parking holds."""
+    """Table [braking] of a file: front wheels' share of the force, and axles that the parking brake holds."""
 
     front_share: Annotated[float, _SHARE]
     parked_by: Annotated[Braked, Field(description="axles whose wheels the parking brake holds")] = "both"

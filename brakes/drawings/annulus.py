@@ -48,7 +48,7 @@ def draw_cone(result: MachineResult) -> Drawing:
 
 
 def _draw_section(result: MachineResult, add: Callable[[list[DrawnShape], Any], None], words: str) -> Drawing:
-    """Draw a section along the axis, of shapes that a function adds, with the actuating force."""
+    """Draw a section along the axis with the actuating force; `add` adds the shapes of the brake to it."""
     brake: Any = result.brake
     arrows = ForceArrows(0.6 * float(brake.outer_radius) / float(result.force))
     add(arrows.shapes, brake)

@@ -26,7 +26,7 @@ def draw_block(result: MachineResult) -> Drawing:
     for i, (lining, placed) in enumerate(zip(result.linings, _SIDES, strict=False), 1):
         _add_lever(arrows.shapes, block, placed)
         if not result.locked:
-            leads = result.reverse is (i == 2)  # whether the surface moves towards the fulcrum
+            leads = result.reverse is (i == 2)  # whether the drum's surface moves towards the fulcrum
             _add_forces(arrows, block, lining, placed, f"_{i}", leads)
             end = _places(block)[2] @ placed
             arrows.add(end, np.array([0.0, -force]) @ placed, f"P_{i}", "load", ends_here=True)

@@ -148,7 +148,7 @@ def factors(ax: Axes, brake: DrumBrake, friction: float | None = None, reverse: 
 
 
 def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool = False) -> Chart:
-    """Make the chart of C* = torque / (force radius) over friction, marking where the brake locks.
+    """Make the chart of C* = torque / (force * radius) over friction, marking where the brake locks.
 
     It has a curve for each shoe and, if there are several, one for the brake.
 
@@ -174,6 +174,6 @@ def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool 
     marks = [ChartMark(friction, f"{friction:g}", at_foot=True)] if friction else []
     if limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=of_shoes[first].name))
-    # C* grows without bound as friction approaches locking.
+    # C* grows without bound as friction approaches locking: C* at a friction well below sets the axis.
     near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, result.c_star))
     return over_friction("Shoe factors", [*of_shoes, *whole], marks, near)

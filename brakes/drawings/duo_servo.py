@@ -41,8 +41,8 @@ def duo_servo(geometry: DuoServo, motion: ShoeMotion, progress: float, title: st
     motion : ShoeMotion
         Motion of its shoes for a clearance.
     progress : float
-        0 at rest, 1 with the linings on the drum, 2 with the piston at its bottom; between these, the
-        fraction of the stage's turn is added.
+        0 at rest, 1 with the linings on the drum, 2 with the piston at its bottom; 0.5 is half of the turn of
+        the first stage, 1.5 half of the turn of the second.
     title : str
         Title of the drawing.
 

@@ -68,7 +68,7 @@ def truck(stop: Stop) -> Drawing:
     for name, (at, vector, role) in places.items():
         arrows.add(at @ turn, vector @ turn, name, role, ends_here=name.startswith("N"))
     arrows.shapes.append(Symbol("dot", cg @ turn, "weight", 7.0))
-    if not stop.stops:  # an arrow down the slope
+    if not stop.stops:  # an arrow down the slope, along which the truck moves on
         at = cg + np.array([0.0, 1.2 * r1])
         foot, tip = at @ turn, (at + np.array([sense * L, 0.0])) @ turn
         arrows.shapes.append(Arrow(foot, tip, "compression", "does not stop", 4.0))

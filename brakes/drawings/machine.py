@@ -69,7 +69,7 @@ def factor_chart(result: MachineResult) -> Chart:
     marks = [ChartMark(mu, f"{mu:g}", at_foot=True)]
     if 0 < limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=own.name))
-    # C* grows without bound as friction approaches locking
+    # C* grows without bound as friction approaches locking: C* at a friction well below sets the axis.
     near = float(np.interp(min(mu, 0.6 * top), at, own.y))
     grows = any(np.isfinite(way.locking_friction).any() for way in ways)
     return over_friction("Brake factor", curves, marks, near if grows else None)
@@ -78,7 +78,11 @@ def factor_chart(result: MachineResult) -> Chart:
 def over_friction(
     title: str, curves: Sequence[ChartCurve], marks: Sequence[ChartMark], near: float | None
 ) -> Chart:
-    """Make a chart of C* over friction; if `near` is given, C* is cut off at 2.5 times that, at least 1."""
+    """Make a chart of the brake factor C* over friction.
+
+    `near` is a typical C*: the axis of C* ends at 2.5 times `near`, but not below 1. If it is None, the axis
+    shows all of the curves.
+    """
     high = None if near is None else max(2.5 * near, 1.0)
-    factor = ChartAxis("C* = torque / (force radius)", low=0.0, high=high)
+    factor = ChartAxis("C* = torque / (force * radius)", low=0.0, high=high)
     return Chart(title, ChartAxis("friction of the linings", low=0.0), factor, curves, marks=marks)

@@ -21,7 +21,10 @@ class Member(NamedTuple):
 
 
 class OuterForce(NamedTuple):
-    """External force: name, point (2,) [m], components (2,) [N]; is it a reaction, is it along a bar."""
+    """External force: name, point (2,) [m], components (2,) [N], and two flags.
+
+    `reaction` tells whether the ground exerts the force, `along_bar` whether it acts along a bar.
+    """
 
     name: str
     at: np.ndarray
@@ -97,7 +100,7 @@ def label_place(outlines: Mapping[str, np.ndarray], body: str) -> np.ndarray:
 
 
 def members(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
-    """Yield the bars, and the bodies with only two pins."""
+    """Yield the bars and the bodies with only two pins, with their forces if `equilibrium` is given."""
     yield from _members("bar", position, equilibrium)
     for body in two_force_bodies(position.mechanism):
         ends = np.array([position.point(body, at) for at in position.mechanism.points[body]])
@@ -110,12 +113,12 @@ def members(position: Position, equilibrium: Equilibrium | None = None) -> Itera
 
 
 def cables(position: Position, equilibrium: Equilibrium | None = None) -> Iterator[Member]:
-    """Return the cables and cable pairs."""
+    """Yield the cables and cable pairs, with their tensions if `equilibrium` is given."""
     return _members("cable", position, equilibrium)
 
 
 def _members(style: str, position: Position, equilibrium: Equilibrium | None) -> Iterator[Member]:
-    """Yield the joints and loads drawn in a style, with the sizes of their forces."""
+    """Yield the joints and loads drawn in a style, such as "bar", with the sizes of their forces."""
     sizes = {} if equilibrium is None else equilibrium.magnitudes | equilibrium.amplitudes
     for name, _, points in shapes(position, style):
         yield Member(name, points, float(np.ravel(sizes.get(name, np.nan))[0]))

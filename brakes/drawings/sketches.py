@@ -119,7 +119,10 @@ def _shoe_with_arms(side: int) -> Drawing:
 
 
 def _force_with_arm(s: Sketch, names: tuple[str, str], along: np.ndarray, arm: np.ndarray, role: str) -> None:
-    """Add to a sketch a force on its line of action, and the lever arm about the centre."""
+    """Add to a sketch a force on its line of action, and the force's lever arm about (0, 0).
+
+    `names` has the symbols of the force and of the arm; `along` is the direction of the force.
+    """
     s.dashed(arm - 0.5 * along, arm + 0.9 * along)
     s.arrow(names[0], arm - 0.45 * along, arm + 0.25 * along, role)
     s.length(names[1], (0.0, 0.0), arm, (-along[0], -along[1]))

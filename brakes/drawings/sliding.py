@@ -54,7 +54,7 @@ def _points(radius: float, alpha: np.ndarray) -> np.ndarray:
 
 
 def _add_shoe(shapes: list[DrawnShape], brake: Sliding, side: np.ndarray) -> None:
-    """Add a shoe with its lining and its abutment to the shapes, on a side of the drum."""
+    """Add a shoe with lining and abutment to the shapes; `side` has the signs of x and y on its side."""
     r, alpha = float(brake.drum_radius), _along(brake)
     foot = np.array([float(brake.abutment_offset), -float(brake.abutment_depth)])
     head = np.array([foot[0], float(brake.force_arm)])

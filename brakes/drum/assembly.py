@@ -12,7 +12,7 @@ import numpy as np
 from beamdyn.common.inputs.array_checks import Numbers, not_negative, together
 from beamdyn.common.inputs.checks import flag, kind, refuse, set_fields, several
 from beamdyn.common.results.columns import Meaning
-from beamdyn.common.results.one_line import error_at_most, spanned
+from beamdyn.common.results.one_line import counted, error_at_most, spanned
 from brakes.common.loads import take_load
 from brakes.common.locking import RubbingResult
 from brakes.drum.shoe import Shoe, ShoeResult, integrals, solve_shoe
@@ -55,8 +55,8 @@ class DrumBrake:
         set_fields(self, shoes=several("shoes", self.shoes, Shoe), leading=leading)
         if not self.shoes or len(self.shoes) != len(self.leading):
             raise ValueError(
-                f"{len(self.shoes)} shoes and {len(self.leading)} entries of leading: give one entry "
-                "per shoe, at least one shoe"
+                f"number of shoes: {len(self.shoes)}, of entries of leading: {len(self.leading)}; give one "
+                "entry per shoe, and at least one shoe"
             )
         radii = [shoe.drum_radius for shoe in self.shoes]
         if any(not np.all(np.asarray(radius) == radii[0]) for radius in radii):
@@ -126,9 +126,10 @@ class BrakeResult(RubbingResult):
     peak_pressure : ndarray
         Largest pressure on any lining [Pa].
     c_star, c_star_slope : ndarray
-        Sum of the shoe factors, torque / (force radius), and its derivative with respect to the friction.
+        Sum of the shoe factors, torque / (force * radius), and its derivative with respect to the friction.
     locking_friction, margin, locked : ndarray
-        Of the shoe that locks first: locking friction, margin to this, and whether the shoe locks.
+        Of the shoe that locks first: locking friction, margin 1 - friction / locking friction, and whether
+        the shoe locks.
 
     Examples
     --------
@@ -148,7 +149,7 @@ class BrakeResult(RubbingResult):
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one-line summary; see `Result.headline`."""
-        yield f"{len(self.shoes)} shoes, torque {spanned(self.torque, 'N m')}"
+        yield f"{counted(len(self.shoes), 'shoe')}, torque {spanned(self.torque, 'N m')}"
         yield f"C* {spanned(self.c_star)}"
         yield error_at_most(self.error)
         yield "locked" if np.any(self.locked) else "slides"
@@ -272,9 +273,11 @@ def shoe_torque(
 
     Notes
     -----
-    With s = -1 for the leading shoe, +1 for the trailing, A = width r, and the integrals K, S, C of
-    sin, sin^2, sin cos over the arc: P (a + c) = A p0 (n + s mu d), n = c S - b C,
-    d = r K - b S - c C; torque = mu A p0 r K.
+    Angles are measured from the line where the pressure vanishes, and (b, -c) is the pin in axes turned to
+    this line. The pressure is p0 times the sine of the angle. With s = -1 for the leading shoe, +1 for the
+    trailing, A = width r, and the integrals K, S, C of sin, sin^2, sin cos over the arc, the moment of P
+    about the pin is A p0 (n + s mu d), n = c S - b C, d = r K - b S - c C, and the torque is mu A p0 r K. A
+    uniform pressure is p0, with the integrals of 1, sin, cos.
 
     References
     ----------

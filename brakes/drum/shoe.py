@@ -143,10 +143,11 @@ class Shoe:
 class _Integrals:
     """Integrals of the pressure over a shoe's lining, in axes turned by the angle delta of zero pressure.
 
-    K, S, C are the integrals of q, q sin, q cos, where the pressure shape q is the sine, or 1 if uniform; n
-    and d are the arms [m] about the pin of the normal force and, for friction 1, of the friction force: P (a
-    + c) = A p0 (n + s mu d). `K_error` bounds the rounding of K, `SC_error` that of S and C over both, and
-    `n_error` and `d_error` that of the arms [m].
+    The pressure is p0 q, with the scale p0 and the shape q: the sine of the angle, or 1 if it is uniform.
+    K, S, C are the integrals of q, q sin, q cos. n and d are the arms [m] about the pin of the normal force
+    and, for friction 1, of the friction force, as in the notes of `shoe_torque`. `K_error` bounds the
+    relative rounding error of K, `SC_error` that of the vector (S, C); `n_error` and `d_error` bound the
+    errors of the arms [m].
     """
 
     K: Numbers
@@ -211,7 +212,7 @@ class ShoeResult(SlidesOrLocks):
         Bound of the relative error of torque, pressure, factors and the actuating force, and of the other
         forces relative to the largest: rounding of inputs and sums, which grows as 1 / margin.
     c_star, c_star_slope : ndarray
-        Shoe factor C* = torque / (force radius), and its derivative with respect to the friction.
+        Shoe factor C* = torque / (force * radius), and its derivative with respect to the friction.
     locking_friction : ndarray
         Friction at which the shoe locks; inf if it never does.
     margin : ndarray
@@ -284,7 +285,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     # The sum of the moments about the centre, relative to P (a + c), checks the solution.
     b, y = shoe.pivot
     left = s * torque - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
-    # The largest relative error, of dC*/dmu or of the vectors, follows from the error of n + s mu d.
+    # The error of n + s mu d gives the relative errors of dC*/dmu and of the vectors; the largest one counts.
     arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
     from_bracket = bracket_error / bracket
     slope_error = i.K_error + i.n_error / np.abs(i.n) + from_bracket

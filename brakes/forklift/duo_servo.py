@@ -139,7 +139,7 @@ class DuoServo(HasLevers):
         return self.move_shoes(clearance).levers_and_error()
 
     def piston_position(self, x: Numbers, y: Numbers) -> Numbers:
-        """Compute the position on the x axis [m] of a piston whose face passes a point of the right side."""
+        """Compute the position on the x axis [m] of a right piston whose face contains a point (x, y) [m]."""
         return x - y * np.tan(self.face_tilt)
 
     def _seating_turn(self, c: Numbers) -> np.ndarray:
@@ -172,7 +172,7 @@ class DuoServo(HasLevers):
             drum_radius=self.drum_radius,
             a1=right[0] * sine + right[1] * cosine,
             a2=-left[0] * sine + left[1] * cosine,
-            b1=-np.asarray(self.adjuster[1]),  # the adjuster turns with the drum, so gamma = psi
+            b1=-np.asarray(self.adjuster[1]),  # the adjuster turns with the drum: same arm, gamma = psi
             b2=-np.asarray(self.adjuster[1]),
             alpha1=self.face_tilt,
             alpha2=self.face_tilt,
@@ -282,7 +282,7 @@ class ShoeMotion(HasLevers, Result):
 
     @property
     def residual(self) -> Numbers:
-        """Residual at the end of each stage: gap of contact point, or of piston to its bottom, over r."""
+        """Larger of two residuals over r: gap at the contact point, and of the piston to its bottom."""
         brake, r = self.geometry, self.geometry.drum_radius
         x, y = _turned(r - self.clearance, 0.0, brake.contact_angle)
         seated = np.hypot(*brake._after_seating(np.asarray(self.seating_turn), x, y)) - r

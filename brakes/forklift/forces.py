@@ -1,5 +1,10 @@
 """Internal forces of a duo-servo brake (Yoo et al. 1997, section 4), by exact reduction to one equation.
 
+The drum exerts the normal and friction forces A and B on the leading shoe, C and D on the trailing shoe. P_L
+and P_T are the forces of the pistons on these shoes, and Q is the force of the adjuster. The arms a1, a2 of
+P_L and P_T, the arms b1, b2 of Q, and the angles alpha1, alpha2, gamma are those of `Levers`; T is the torque
+and r the drum's radius.
+
 The moments about the drum's centre give B = (P_L a1 - Q b1) / r, D = (Q b2 - P_T a2) / r and B + D = T / r.
 The forces give the resultants R_L^2 = A^2 + B^2 = P_L^2 + Q^2 + 2 P_L Q cos(phi1) and
 R_T^2 = C^2 + D^2 = P_T^2 + Q^2 + 2 P_T Q cos(phi2), with phi1 = alpha1 + gamma, phi2 = alpha2 - gamma. Equal

@@ -25,10 +25,10 @@ _REMEDY = "leave 1 or more out of 100 parts"
 class Ring(Machine):
     """Base of brakes that rub on a ring; every number may be an array, one entry per case.
 
-    Force and friction moment per radian of a ring, at the largest pressure p and a friction coefficient of 1,
-    are p ri (ro - ri) and p ri (ro^2 - ri^2)/2 under uniform wear, p (ro^2 - ri^2)/2 and p (ro^3 - ri^3)/3
-    under uniform pressure (Budynas and Nisbett, Shigley's Mechanical Engineering Design, sections 16-5 to
-    16-7).
+    Force and friction moment per radian of a ring with the radii ri (inner) and ro (outer), at the largest
+    pressure p and a friction coefficient of 1, are p ri (ro - ri) and p ri (ro^2 - ri^2)/2 under uniform
+    wear, p (ro^2 - ri^2)/2 and p (ro^3 - ri^3)/3 under uniform pressure (Budynas and Nisbett, Shigley's
+    Mechanical Engineering Design, sections 16-5 to 16-7).
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ class Ring(Machine):
 
     @property
     def rubbing_radius(self) -> Numbers:
-        """Radius [m] at which pressure times radius is largest: inner one under wear, else outer one."""
+        """Radius [m] at which pressure times radius is largest: inner radius under wear, else the outer."""
         return self.inner_radius if self.law == "wear" else self.outer_radius
 
     def reach(self) -> tuple[Numbers, Numbers]:
@@ -229,7 +229,7 @@ class Cone(Ring):
     reactions: ClassVar[Mapping[str, Meaning]] = MappingProxyType(
         {
             "normal": Meaning("N", "pressure times area"),
-            "release": Meaning("N", "force that pulls it apart; below 0 it opens by itself"),
+            "release": Meaning("N", "force that releases the cone; below 0 it releases itself"),
         }
     )
 
@@ -251,4 +251,4 @@ class Cone(Ring):
         if not sticks.any():
             return ()
         least = float(np.min(np.broadcast_to(self.taper, sticks.shape)[sticks]))
-        return (f"the cone sticks from friction {least:.4g} on, its taper: it must be pulled apart",)
+        return (f"the cone sticks from friction {least:.4g} on, its taper: pull it out of the cup",)

@@ -48,7 +48,7 @@ class Band(Machine):
 
     Notes
     -----
-    With tensions T1 of the first and T2 of the second end, force arm = T1 a - T2 s, torque = (T2 - T1) r
+    With tensions T1 of the first and T2 of the second end, force * arm = T1 a - T2 s, torque = (T2 - T1) r
     forward; the largest pressure is that at the tight end, tension / (w r).
 
     References

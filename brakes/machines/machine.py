@@ -111,7 +111,7 @@ class Machine(ABC):
     @property
     @abstractmethod
     def reference_radius(self) -> Numbers:
-        """Radius of the brake factor C* = torque / (force radius) [m]."""
+        """Radius of the brake factor C* = torque / (force * radius) [m]."""
 
     @property
     def rubbing_radius(self) -> Numbers:
@@ -183,7 +183,7 @@ class MachineResult(RubbingResult):
     force, torque, peak_pressure : ndarray
         Actuating force [N], torque [N m], largest pressure on any lining [Pa].
     c_star, c_star_slope : ndarray
-        Brake factor torque / (force radius), and its derivative with respect to the friction.
+        Brake factor torque / (force * radius), and its derivative with respect to the friction.
     radius : ndarray
         Radius that the brake factor refers to [m].
     locking_friction, margin : ndarray

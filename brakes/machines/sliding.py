@@ -1,4 +1,4 @@
-"""Drum brakes whose shoes slide on a flat abutment, with contact on one side only.
+"""Drum brakes whose shoes slide on a flat abutment; a lining may lift in part, as it cannot pull.
 
 Axes and angles are those of `brakes.drum`. A rigid shoe that no pin holds presses with p0 max(0, sin(alpha -
 delta)): it lifts where the lining would have to pull. Its end at (b, -c) slides along the abutment without
@@ -30,8 +30,8 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from brakes.machines.machine import Lining, Machine
 
-# Numbers of bisections, which reduce a step of friction to its rounding, and an angle below 2 pi to 1e-10: a
-# Newton step then squares the error.
+# Numbers of bisections. The first reduces a step of friction to its rounding. The second reduces an angle
+# below 2 pi to 1e-10; a Newton step then squares this error.
 _HALVINGS, _HALVINGS_OF_ANGLE = 52, 36
 _FRICTIONS = np.linspace(0.0, 3.0, 61)  # friction coefficients among which self-locking is sought
 # Angle of contact [rad] below which the lining counts as touching only at its edge, where the shoe has no
@@ -216,9 +216,9 @@ class Sliding(Machine):
         return np.where(free.all(axis=0), np.inf, high)
 
     def _force(self, mu: np.ndarray, leads: bool) -> np.ndarray:
-        """Compute the actuating force over width, radius and pressure scale p0.
+        """Compute the actuating force, divided by the product of width, radius and pressure scale p0.
 
-        It is nan where no distribution of pressure keeps the shoe in equilibrium.
+        The result is nan where no distribution of pressure keeps the shoe in equilibrium.
         """
         s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
         return self._moment(self._integrals(delta), mu, s) / self.arm

@@ -135,14 +135,14 @@ def _branch(
     unpressed, jams = _jams_when_disturbed(system, balance, start, law)
     law = np.where(unpressed, 0.0, law)
     multiplier, jammed = _newton(system, balance, start, law)
-    # A load that is not zero without friction may act in the opposite direction with friction: it locks.
+    # The mechanism locks where friction reverses the unknown load. Loads below `zero` count as zero.
     zero = rank_tolerance(system.rounding) * np.maximum(*(np.abs(x).max(axis=1) for x in (start, multiplier)))
     reversed_ = (np.abs(start[:, load]) > zero) & (multiplier[:, load] * np.sign(start[:, load]) < -zero)
     multiplier[jammed] = start[jammed]  # finite placeholders, which the result replaces by nan
     forces = decompose(balance.matrix, system.rounding)
     regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
     kept = regularity[:, -1] / regularity[:, 0]
-    jammed |= kept <= rank_tolerance(system.rounding)  # rounding would decide whether it jams
+    jammed |= kept <= rank_tolerance(system.rounding)  # so near to jamming that rounding decides
     multiplier[jammed] = start[jammed]
     result = collect_result(position, balance, forces, multiplier, jammed, kept)
     if (jams & ~jammed).any():
@@ -191,14 +191,14 @@ def _jams_when_disturbed(
             offset[:, [coordinate]] = sense * size
             without = _newton(system, balance, multiplier, np.where(unpressed, 0.0, law), offset)[0]
             pressed = unpressed & (_pressing(system, without) > _UNPRESSED)
-            if pressed.any():  # all other pressing forces are 0, and their directions meaningless
+            if pressed.any():  # no friction at other joints without pressure: it has no direction
                 rubbing = np.where(unpressed & ~pressed, 0.0, law)
                 jams |= pressed.any(axis=1) & _newton(system, balance, multiplier, rubbing, offset)[1]
     return unpressed & (jams[:, None] | (force <= _rounding(system))), jams
 
 
 def _pressing(system: System, multiplier: np.ndarray) -> np.ndarray:
-    """Compute the pressing force at joints with friction, relative to the largest of all, by position."""
+    """Compute pressing forces (positions, joints with friction) over the largest force at the position."""
     force = np.zeros((len(multiplier), len(system.pressing)))
     for k, rows in enumerate(system.pressing):
         force[:, k] = np.linalg.norm(multiplier[:, rows], axis=1)
@@ -241,7 +241,7 @@ def _newton(
         size = np.inf
         for _ in range(40):
             residual, slope = _friction(system, balance, multiplier, part * full)
-            # Beyond a singular matrix the solution is on another branch.
+            # Where the determinant has changed its sign the solution is on another branch: this is jamming.
             jammed |= np.linalg.slogdet(slope).sign != sign
             slope[jammed] = np.eye(slope.shape[1])
             step = np.linalg.solve(slope, (residual + offset)[..., None])[..., 0]

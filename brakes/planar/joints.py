@@ -287,7 +287,7 @@ class Contact(OnTwoBodies, Joint):
         return (FrictionLaw(self._row(1j), self.friction),)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
-        """Warn of a straight face that rotates: it represents a round face at one position only."""
+        """Warn of a straight face that rotates: it stands for a round face correctly at one position only."""
         turned = np.degrees(np.ptp(angles.get(self.other, 0.0)))
         if self.centre is None and turned > _TURNS:
             yield (

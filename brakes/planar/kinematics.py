@@ -228,7 +228,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     try:
         ends = (min(0.0, target.min()), max(0.0, target.max()))
         wanted = start.value[k] + np.append(target, ends)
-        # Due to rounding a toggle position may be just before a wanted value.
+        # Wanted values are clipped: due to rounding the curve may end at a toggle position just before one.
         within = nodes[0].value[k], nodes[-1].value[k]
         y = solve_at_values(system, nodes, k, np.clip(wanted, *within))
     except np.linalg.LinAlgError:

@@ -64,7 +64,7 @@ class Mechanism:
         for key, wanted in {"bodies": str, "joints": Joint, "loads": Load}.items():
             set_fields(self, **{key: several(key, getattr(self, key), wanted)})
         if not self.bodies or GROUND in self.bodies:
-            raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} is there by itself")
+            raise ValueError(f"bodies = {self.bodies!r}: name one or more; {GROUND!r} always exists")
         for what, names in (("body", self.bodies), ("joint or load", [part.name for part in self.parts])):
             if twice := [name for name, times in Counter(names).items() if times > 1]:
                 raise ValueError(f"{what} {twice[0]!r} occurs twice: give each its own name")
@@ -117,7 +117,7 @@ class Mechanism:
         return Position(self, np.zeros(self.system.size))
 
     def load(self, name: str) -> Load:
-        """Return the load of a name."""
+        """Return the load with a name; raise a ValueError that suggests a known name if there is none."""
         kind("load", name, str)
         known = {load.name: load for load in self.loads}
         if name not in known:
@@ -196,7 +196,7 @@ _SMALL_STEP = 1e-9
 _GUIDING_STEP = 1e-5
 _CLOSED = 1e-14  # gap of a closed joint due to rounding, over the length of the mechanism
 _TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
-_FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # step sizes along the curve, over the length of the mechanism
+_FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # steps along the curve, over the mechanism's length
 _NODES = 20_000
 _HALVINGS = 12  # bisections of a segment: finer than the distance of its cubic from the curve
 
@@ -350,7 +350,7 @@ def solve_at_sum(system: System, a: Node, b: Node, weight: np.ndarray, target: f
 def solve_at_arc_lengths(system: System, nodes: list[Node], target: np.ndarray) -> np.ndarray:
     """Find coordinates (one row each) at given arc lengths along the curve from the first node."""
     half = np.array([_angle(a, b) / 2 for a, b in pairwise(nodes)])
-    # Between the nodes the curve is approximated by circles.
+    # Between the nodes the curve is approximated by circular arcs.
     arc = np.append(0.0, np.cumsum(_chords(nodes) / np.sinc(half / np.pi)))
     segment = np.clip(np.searchsorted(arc, target, side="right") - 1, 0, len(nodes) - 2)
     return close_joints(system, *_between(nodes, segment, (target - arc[segment]) / np.diff(arc)[segment]))

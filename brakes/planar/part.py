@@ -82,7 +82,7 @@ def check_inputs(core: object, prefix: str = "") -> None:
 
 @cache
 def _wanted(core: type) -> list[tuple[str, Any, bool, bool, Described]]:
-    """List each described input of a dataclass: name, type, is it a list, may it be None.
+    """List each described input of a dataclass: name, type, whether it is a list, whether it may be None.
 
     Cached, as studies make thousands of instances of each class.
     """
@@ -119,7 +119,7 @@ Direction = Annotated[Point, DescribedDirection(meaning="direction, as a vector 
 Length = Annotated[float, Described("m", meaning="length, if not the drawing's", above=0)]
 _OPPOSES = "friction opposes the motion by itself; give its size"
 Coefficient = Annotated[float, Described("", "mu", "coefficient of friction", least=0, remedy=_OPPOSES)]
-_UNKNOWN = "or None for an unknown amplitude"
+_UNKNOWN = "or None for an unknown magnitude"
 _NEWTONS = Described("N", meaning="magnitude; unknown if not given", remedy=_UNKNOWN)
 Newtons = Annotated[float, _NEWTONS]
 NewtonMetres = Annotated[float, replace(_NEWTONS, unit="N m")]

@@ -51,7 +51,7 @@ def check_point(key: str, value: object) -> Point:
 
 
 def unit_vector(key: str, value: object) -> Point:
-    """Return the unit vector of a direction (x, y); raise a ValueError with `key` if it is (0, 0) or none."""
+    """Return the unit vector of a direction (x, y); raise a ValueError that names `key` for (0, 0)."""
     x, y = check_point(key, value)
     size = math.hypot(x, y)
     if not size:
@@ -225,7 +225,7 @@ class Round(_AtPoint):
     def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
         """Add |p - c| to the value of each row normal to the circle, and the forces of all rows at p.
 
-        It is subtracted if `direction` is -1; nothing is added to the value of a row along the circle.
+        |p - c| is subtracted if `direction` is -1; nothing is added to the value of a row along the circle.
         """
         a, b, arm, on, way = columns
         arm = pose.spin[a] * arm[:, None]
@@ -269,7 +269,7 @@ class Path:
     def add(pose: Pose, totals: Totals, row: np.ndarray, *columns: np.ndarray) -> None:
         """Subtract each path's length from the value of its row, and add the pulls of its segments.
 
-        They act on the bodies as forces, with couples about the centres.
+        The pulls act on the bodies as forces, with couples about the centres of the bodies.
         """
         a, b, arm, arm_other = columns
         arm, arm_other = pose.spin[a] * arm[:, None], pose.spin[b] * arm_other[:, None]

@@ -30,7 +30,7 @@ from brakes.planar.system import (
 
 _BALANCED = 1e-9  # largest residual of equilibrium that counts as zero, over the largest force
 _UNDETERMINED = 1e-7  # component of a self-stress above which a reaction counts as undetermined
-_BESIDE = 1e-2  # fraction of its length by which a mechanism is moved away from a toggle position
+_BESIDE = 1e-2  # part of its length by which a mechanism is moved off a toggle, to test if it is held there
 _WEAK = 1e-5  # relative singular value below which the result counts as ill-conditioned
 
 
@@ -370,7 +370,7 @@ def _verdict(
     loose, y = forces.left_null(worst), position.batch[worst]
     found: list[tuple[str, str]] = []
     how = describe(system, y, loose) if unbalanced.any() or loose.shape[1] else ""
-    remedy = "add a joint, or give a load that moves it an unknown amplitude"
+    remedy = "add a joint, or give no magnitude to a load that moves it"
     if unbalanced.any():
         free, margin, least = constraints.null(worst), forces.dropped[worst], rank_tolerance(system.rounding)
         if free.shape[1] == 1 and _is_held_beside(position, worst, free[:, 0], int(forces.rank[worst])):
@@ -379,7 +379,7 @@ def _verdict(
                 how,
                 f" there, which only forces beyond all bounds could stop (smallest singular value "
                 f"{margin:.1g}, at least {least:.1g} is needed); draw it further from that position, or give "
-                "a load that moves it an unknown amplitude",
+                "no magnitude to a load that moves it",
             )
             found.append(("near a toggle", sentence))
         else:
@@ -388,8 +388,8 @@ def _verdict(
         if undetermined:
             sentence = (
                 "statically indeterminate: equilibrium alone does not give "
-                f"{join_names(undetermined)}; remove a joint among them, or give a load of unknown amplitude "
-                "its magnitude"
+                f"{join_names(undetermined)}; remove a joint among them, or give the magnitude of a load "
+                "that has none"
             )
             found.append(("undetermined", sentence))
         if loose.shape[1]:

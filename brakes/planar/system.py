@@ -253,7 +253,7 @@ class OutOfReachError(ValueError):
     Parameters
     ----------
     reason : str
-        The motion that is not reached, and where it ends.
+        The travel that is not reached, and where the motion turns back.
     remedy : str
         Advice to the user.
 

@@ -44,7 +44,10 @@ class Cell(Verdict):
 
     @property
     def texts(self) -> list[str]:
-        """Texts of printed number and, with a digit more, that by the paper's method and corrected one."""
+        """Texts of the numbers: as printed, by the paper's method, and by the corrected mechanics.
+
+        The last two have one digit more than the printed number.
+        """
         decimals = max(0, 1 - round(math.log10(self.step)))
         numbers = [x for x in (self.ours, self.right) if x is not None]
         return [self.printed, *(f"{x:.{decimals}f}" if math.isfinite(x) else "never stops" for x in numbers)]

@@ -2,7 +2,7 @@
 
 Vardanyan et al., The Braking Torque of the Cylinder Brake Mechanism (2019). Inputs and errata come from
 ``brakes/published/vardanyan_2019.toml``; the consequences are for the paper's longest arc, 80 degrees,
-unless stated otherwise. The right mechanics is in `brakes.drum.shoe_torque`.
+unless stated otherwise. The corrected mechanics is in `brakes.drum.shoe_torque`.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def table_1(arc: np.ndarray | None = None) -> Table1:
 
 
 def table_arm(arc: np.ndarray | float) -> np.ndarray:
-    """Compute the effective arm [m] that reproduces Table 1, at arcs [rad]; (12) gives 11.9 % less."""
+    """Compute the effective arm [m] of Table 1 at arcs [rad]; the paper's equation (12) gives 11.9 % less."""
     return _R * 0.87 * (np.cos(0.5236) - np.cos(_START + np.asarray(arc))) / 1.1485
 
 
@@ -95,10 +95,10 @@ def _torque(rho: np.ndarray | float, b: float) -> np.ndarray:
 
 
 def corrected(arc: np.ndarray | float | None = None, pressure_zero: PressureZero = _AXIS) -> BrakeResult:
-    """Solve the paper's brake by the right mechanics, at arcs of the lining [rad] (by default of Table 1).
+    """Solve the paper's brake by the corrected mechanics, at arcs of the lining [rad], by default Table 1's.
 
-    The pressure is the paper's (2), which is zero on the axis; with "pivot" it is that of a shoe that turns
-    about its pin.
+    The pressure is that of the paper's equation (2), which is zero on the axis; with "pivot" it is that of a
+    shoe that turns about its pin.
     """
     arc = table_1().arc if arc is None else arc
     first, second = (_shoe(b, arc, pressure_zero) for b in (_B1, _B2))

@@ -26,7 +26,7 @@ def sections() -> dict[str, list[Comparison]]:
     (f_t, x_work), (_, x_equal) = tangential_forces("equal work"), tangential_forces("equal force")
     gap = (x_work - f_t) / x_work
     percent = statics["difference_percent"], 100 * gap, 100 * _ERROR, 1, "cut off, not rounded"
-    equal = "equal pad forces give X = f_t, by virtual work in mean pad travel; the page's tension differs"
+    equal = "with equal pad forces X equals f_t; the page's X belongs to another cable tension, 2 delta_R"
     run = _stroke("equal force", _CABLE)
     finger, pad = 1e3 * float(run.finger[-1]), 1e3 * float(run.pad_travel[-1].mean())
     mean = float(run.finger[-1] / run.pad_travel[-1].sum())

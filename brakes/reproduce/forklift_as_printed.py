@@ -53,10 +53,10 @@ Tables = dict[tuple[str, str], np.ndarray]  # columns by table and quantity, e.g
 
 @dataclass(frozen=True)
 class PrintedStop(Stop):
-    """A stop by the paper's equations, in which an axle can lift; with the right equations it cannot.
+    """A stop by the paper's equations, in which an axle can lift; with the corrected ones it cannot.
 
-    If one does, the status is ``"front wheel lifts"`` or ``"rear wheel lifts"``. It is never ``"stops in the
-    rise time"``: the paper begins the last phase with the full speed.
+    If an axle lifts, the status is ``"front wheel lifts"`` or ``"rear wheel lifts"``. It is never ``"stops in
+    the rise time"``: the paper begins the last phase with the full speed.
     """
 
     @property
@@ -104,13 +104,13 @@ def stop_as_printed(truck: Truck, conditions: StopConditions) -> PrintedStop:
 
 
 def printed_distance(acceleration: Numbers, c: StopConditions) -> Numbers:
-    """Compute the stopping distance [m] by the paper's (19)-(24); the acceleration [m/s2] is below 0."""
+    """Compute the stopping distance [m] by the paper's equations (19)-(24); acceleration [m/s2] below 0."""
     V, A, t2 = c.speed, acceleration, c.rise_time
     return V * c.reaction_time + (A * t2**2 / 6 + V * t2) - V**2 / (2 * A)
 
 
 def answer_as_printed(design: ForkliftInput, stages: tuple[StageName, ...]) -> ForkliftAnswer | None:
-    """Solve the stages of a file with the paper's stop instead of the right one.
+    """Solve the stages of a file with the paper's stop instead of the corrected one.
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def tables() -> Tables:
 
 
 def corrected_tables() -> Tables:
-    """Compute Tables 2-4 by the right mechanics, in SI units; the distance is inf if there is no stop."""
+    """Compute Tables 2-4 by the corrected mechanics, in SI units; the distance is inf if there is no stop."""
     return _vehicle_tables(stop)
 
 
@@ -182,7 +182,7 @@ def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
 
 
 def inputs_of(name: str) -> dict[str, np.ndarray]:
-    """Return the values of a table's varied inputs by their published keys, that of the rows first."""
+    """Return the values of a table's varied inputs by published keys; the input of the rows is first."""
     entries = load("yoo_1997")[name].items()
     varied = {key: entry for key, entry in entries if key != "padded" and "value" in entry}
     return {key: np.array(entry["value"]) for key, entry in varied.items()}
@@ -226,7 +226,7 @@ def errata() -> tuple[Erratum, ...]:
     unladen = [solve(*base_case(load_mass=0.0)).acceleration for solve in (stop_as_printed, stop)]
     truck, conditions, torque = right.truck, right.conditions, right.torque_per_brake
     mu, y, r1 = conditions.friction, truck.cg[1], truck.front_wheel_radius
-    # If the moments about the axle omit the brake torque, the arm is y_cg.
+    # Torque by the paper over the right torque: its moments omit the brake torque, so that the arm is y_cg.
     ratio = (truck.wheelbase + mu * (y + r1)) / (truck.wheelbase + mu * y)
     missing = 1 - paper["reproduction"]["factor"]["value"]
     slower = right.acceleration - missing * (conditions.gravity * np.sin(conditions.slope))
@@ -286,7 +286,7 @@ class NewtonResult(Result):
     def message(self) -> str:
         """One sentence that describes the outcome of the iteration."""
         if not self.converged:
-            return f"no convergence within {self.iterations} steps: try another start, or the reduction"
+            return f"no convergence within {self.iterations} steps: try another start, or internal_forces"
         mirrored = "" if self.physical else " to a mirror image: friction against the drum's motion"
         return f"converged{mirrored}"
 

@@ -1,7 +1,9 @@
 """Inverse questions: the tyre friction that a slope or a stopping distance needs.
 
 A braking ratio tau on axles that carry the fraction n(tau) of the load needs the friction mu = tau / n(tau),
-and tau rises with mu until the vehicle pitches over: each answer is unique. The distance of a stop,
+and tau rises with mu until the vehicle pitches over: each answer is unique. The distance of a stop from the
+speed V, with the reaction time t1, the rise time t2 of the braking force and the acceleration A at full
+force,
 
     s = V t1 + V t2 / 2 - d t2^2 / 24 + V^2 / (2 d)   for the deceleration d = -A up to 2 V / t2,
     s = V t1 + (2 / 3) V sqrt(2 V t2 / d)             for a stop within the rise time,
@@ -171,13 +173,13 @@ def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axl
     lifted &= braked != other(leading)  # a braked upper axle slips before its load falls to 0
     with np.errstate(divide="ignore", invalid="ignore"):
         friction = np.maximum(ratio, 0.0) / np.where(share > 0, share, np.nan)
-    much = f"even a friction of {MOST_FRICTION:g}, the most that is taken, holds less"
+    much = f"even a friction of {MOST_FRICTION:g}, the largest that is accepted, is too low"
     tips = "the vehicle tips over its lower axle, whatever the friction"
     return needed(friction, (lifted, tips), (~(friction <= MOST_FRICTION), much))
 
 
 def _deceleration(c: StopConditions, left: Numbers) -> Numbers:
-    """Find the deceleration at full force [m/s2] for a stop in a distance after the reaction time [m]."""
+    """Find the deceleration at full force [m/s2] of a stop within `left` [m] after the reaction time."""
     V, t2 = np.asarray(c.speed), np.asarray(c.rise_time)
     way = np.where(np.asarray(left) > 0, left, np.nan)
     with np.errstate(divide="ignore", invalid="ignore"):

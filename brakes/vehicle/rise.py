@@ -1,9 +1,9 @@
 """Motion of a vehicle on a slope while it coasts, and to rest under a braking force that rises linearly.
 
-With the slope's pull p = g sin(beta) and the full braking force per mass r, the speed after the rise time t2
-is V + (p - r / 2) t2. Yoo et al. (1997) let the deceleration rise from 0 instead, as if the brakes balanced
-the slope's pull from the start: on a steep slope their distance is shorter.
-Uphill p is negative.
+With the slope's pull p = g sin(beta), negative uphill, and the full braking force per mass r, the speed
+changes in the rise time t2 from V to V + (p - r / 2) t2. Yoo et al. (1997) let the deceleration rise from 0
+instead, as if the brakes balanced the slope's pull from the start: on a steep slope their distance is
+shorter.
 """
 
 from __future__ import annotations

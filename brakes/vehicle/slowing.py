@@ -2,7 +2,7 @@
 
 The brakes give the force B at all wheels, the fraction phi of it in front. The force of an axle is the
 smaller of its part of B and of mu times its load, which depends on the braking ratio tau: with W = M g
-cos(beta),
+cos(beta), and the loads of the front and rear axle n_f and n_r, as fractions of W,
 
     tau = min(phi B / W, mu n_f(tau)) + min((1 - phi) B / W, mu n_r(tau)).
 
@@ -67,7 +67,7 @@ class Approach:
 
     speed: Annotated[Numbers, Described("m/s", "V", "speed before the stop", above=0)]
     reaction_time: Annotated[
-        Numbers, Described("s", "t1", "time before the brakes act, in which it coasts", least=0)
+        Numbers, Described("s", "t1", "time before the brakes act, in which the vehicle coasts", least=0)
     ] = 0.0
     rise_time: Annotated[Numbers, Described("s", "t2", "time in which the brake force rises", least=0)] = 0.0
     brake_force: Annotated[
@@ -153,7 +153,7 @@ class Slowing(Result):
         held = self.ratio * np.cos(self.road.slope) * risen
         rolls = (a.heading == "uphill") & (held < np.sin(self.road.slope) * (1 - _EDGE))
         many = f", in {np.sum(rolls)} of {rolls.size} cases" if rolls.ndim else ""
-        said = "it stands before its brakes hold it, and rolls back until they do: that is not counted"
+        said = "it stands before its brakes hold it, and rolls back until they do; the rolling is not counted"
         return (f"{said}{many}",) if np.any(rolls) else ()
 
     @property

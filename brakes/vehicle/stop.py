@@ -165,7 +165,7 @@ class Stop(Result):
     braking_distance: Annotated[Numbers, Meaning("m", "distance with the full force")]
     speed_lost_in_rise: Annotated[Numbers, Meaning("m/s", "speed lost while the force rises")]
     speed_gained_coasting: Annotated[
-        Numbers, Meaning("m/s", "speed a coasting truck would gain in reaction, not counted")
+        Numbers, Meaning("m/s", "speed a coasting truck would gain in reaction time, not counted")
     ]
     torque_per_brake: Annotated[Numbers, Meaning("N m", "torque of one brake")]
     front_load: Annotated[Numbers, Meaning("N", "front axle's load, sliding", "kN")]
@@ -241,8 +241,8 @@ _SENTENCES = {
     "less slope, more friction, or another load",
     "brakes too weak": "the brakes hold less than the slope pulls, though the road would hold more: the "
     "truck never stops; press harder, or take stronger brakes",
-    "too near to decide": "does not stop: the slope is too near the steepest that the locked front wheels "
-    "hold to decide; less slope, more friction, or another load",
+    "too near to decide": "does not stop: the slope is too near the steepest on which locked front wheels "
+    "hold the truck; less slope, more friction, or another load",
 }
 
 

@@ -102,7 +102,7 @@ def test_at_each_step_advice_says_what_is_missing():
         "held by the ground",
         "Nothing holds handle",
         "Add a force",
-        "without magnitude 0",
+        "without magnitude: 0",
         "To see it move",
     )
     for sentences, word in zip(said, words, strict=False):

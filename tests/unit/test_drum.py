@@ -90,7 +90,7 @@ def test_torque_is_refused_exactly_from_locking():
 
 def test_brakes_are_refused():
     refused(lambda: drum.DrumBrake((), ()), "at least one")
-    refused(lambda: drum.DrumBrake((shoe(),), (True, False)), "1 shoes and 2")
+    refused(lambda: drum.DrumBrake((shoe(),), (True, False)), "number of shoes: 1, of entries of leading: 2")
     refused(lambda: drum.simplex(shoe(), shoe(drum_radius=0.139)), "drum_radius")
 
 

@@ -57,7 +57,7 @@ def test_zero_that_is_only_touched_is_found():
     [
         (lambda x: x * (4 - x), 4.5, "none from 0.5 to 5: answer is at most 4, at input = 2"),
         (lambda x: 2 * x, 0.5, "none from 0.5 to 5: answer is at least 1, at input = 0.5"),
-        (lambda x: np.floor(x), 1.5, "it jumps past at input = 2"),
+        (lambda x: np.floor(x), 1.5, "it jumps past the wanted value at input = 2"),
         (lambda x: 7.0 + 0 * x, 3.0, "none from 0.5 to 5: answer is 7 whatever input is"),
         (
             lambda x: np.where(x < 2, x, np.nan),

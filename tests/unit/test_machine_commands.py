@@ -156,7 +156,7 @@ friction_curve = [["20 degC", 0.2], ["60 degC", 0.15]]
         (
             ('"20 degC", 0.2', '"20 degC", 0.19'),
             NO_ANSWER,
-            "begins with friction 0.19 of its curve, [brake] has 0.2",
+            "the curve in [heat] begins at friction 0.19, [brake] has 0.2",
         ),
         (
             ('["20 degC", 0.2]', '["20 degC"]'),

@@ -184,7 +184,7 @@ def test_friction_without_one_motion_is_an_answer_that_says_so(capsys, tmp_path)
     )
     text = text.replace('[[pin]]\nname = "stop"', '[[contact]]\nname = "stop"\nnormal = [0, 1]')
     code, _, err = run(capsys, write(tmp_path, text))
-    assert code == 1 and "friction acts against one motion; the mobility is 0" in err
+    assert code == 1 and "friction needs mobility 1; here the mobility is 0" in err
 
 
 # Calipers of parts --------------------------------------------------------------------------------

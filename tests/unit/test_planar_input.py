@@ -114,8 +114,8 @@ def test_joints_and_loads(make, message: str):
         (("arm", "arm"), [], [], "body 'arm' occurs twice"),
         (("arm",), [PIN, PIN], [], "joint or load 'pivot' occurs twice: give each its own name"),
         (("arm",), [PIN], [Moment("pivot", "arm")], "joint or load 'pivot' occurs twice"),
-        ((), [], [], "name one or more; 'ground' is there by itself"),
-        (("arm", "ground"), [], [], "'ground' is there by itself"),
+        ((), [], [], "name one or more; 'ground' always exists"),
+        (("arm", "ground"), [], [], "'ground' always exists"),
         ("arm", [], [], "bodies = 'arm': give a sequence of names"),
     ],
 )
