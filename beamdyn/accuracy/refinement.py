@@ -90,7 +90,7 @@ MODES_OF_MOMENTS = ErrorMargin(
 MODES_OF_FORCES = ErrorMargin(
     4.0,
     "shear forces with n modes and with 1.5 n modes",
-    "mode k contributes as k^-2: all modes above n contribute up to 3 times as much as modes n + 1 to 1.5 n",
+    "mode k contributes as k^-2: modes above n contribute up to 3.6 times as much as those to 1.5 n",
     "stated_load_errors",
 )
 STEPS = ErrorMargin(

@@ -132,12 +132,12 @@ def sketch(entries: Mapping[str, str]) -> Rows:
     """Draw the sketches for a form with the given field texts, with the symbols of its inputs."""
     symbols = {entry.path: entry.quantity.symbol for entry in inputs_of(entries)}
     paths = {*symbols}
-    rows = [[_plan(paths)], [_section(paths), _from_the_side()]]
+    rows = [[_plan()], [_section(paths), _from_the_side()]]
     speed = symbols.get("motion.rotation.speed", "omega")
     return [*rows, [_road(speed)]] if "motion.road.wavelength" in paths else rows
 
 
-def _plan(paths: set[str]) -> Drawing:
+def _plan() -> Drawing:
     """Draw the beam and the rotor that carries it, seen along the axis of rotation."""
     s = Sketch()
     along = np.array([-np.cos(_PHI), np.sin(_PHI)])

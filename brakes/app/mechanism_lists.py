@@ -378,14 +378,12 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
     free = core.system.size - core.system.constraints
     # The force of a spring is no unknown: it follows from the spring's length.
     unknown = sum(getattr(load, "magnitude", 0.0) is None for load in core.loads)
-    if free > unknown:
+    if free != unknown:
+        add, drop = "Add a joint, or a force without magnitude.", "Give magnitudes, or remove a joint."
         yield (
             f"Degrees of freedom of the bodies: {core.system.size}; constraints of the joints: "
-            f"{core.system.constraints}; loads without magnitude: {unknown}. Add a joint, or a force without "
-            "magnitude."
+            f"{core.system.constraints}; loads without magnitude: {unknown}. {add if free > unknown else drop}"
         )
-    elif free < unknown:
-        yield f"Unknown loads: {unknown}; degrees of freedom: {free}. Give magnitudes, or remove a joint."
     elif free == 1 and not (run.get("driver") and run.get("travel")):
         yield "To see it move, choose the load that drives the stroke, and its travel."
 
