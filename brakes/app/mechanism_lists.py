@@ -379,10 +379,11 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
     # The force of a spring is no unknown: it follows from the spring's length.
     unknown = sum(getattr(load, "magnitude", 0.0) is None for load in core.loads)
     if free != unknown:
-        add, drop = "Add a joint, or a force without magnitude.", "Give magnitudes, or remove a joint."
+        more, fewer = "Add a joint, or a force without magnitude.", "Give magnitudes, or remove a joint."
         yield (
-            f"Degrees of freedom of the bodies: {core.system.size}; constraints of the joints: "
-            f"{core.system.constraints}; loads without magnitude: {unknown}. {add if free > unknown else drop}"
+            f"Degrees of freedom of bodies: {core.system.size}; constraints of joints: "
+            f"{core.system.constraints}; loads without magnitude: {unknown}. "
+            f"{more if free > unknown else fewer}"
         )
     elif free == 1 and not (run.get("driver") and run.get("travel")):
         yield "To see it move, choose the load that drives the stroke, and its travel."
