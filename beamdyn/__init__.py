@@ -95,21 +95,15 @@ if TYPE_CHECKING:
     from beamdyn.scene.harvester import Harvester
     from beamdyn.scene.measured_curves import MeasuredHistory, MeasuredLoads, MeasuredPeaks, MeasuredResponse
     from beamdyn.scene.measured_frequencies import MeasuredFrequencies
-    from beamdyn.scene.motion import (
-        Line,
-        Motion,
-        MotionSample,
-        PulsatingRotation,
-        RoadWave,
-        RollingWheel,
+    from beamdyn.scene.motion.base import Line, Motion, MotionSample
+    from beamdyn.scene.motion.oscillating import PulsatingRotation, SampledTranslation, ShakenCarrier
+    from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
+    from beamdyn.scene.motion.rotations import (
         Rotation,
         RotationFunction,
         SampledRotation,
-        SampledTranslation,
-        ShakenCarrier,
         SpinUp,
         SteadyRotation,
-        UserMotion,
     )
     from beamdyn.scene.mount import Damping, Mount
     from beamdyn.scene.physics import JudgedEffect, Physics, PhysicsChoice

@@ -19,7 +19,7 @@ from beamdyn.common.edge.data_text import read_csv, read_data
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.linear import inputs_outputs
-from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.motion.rolling import RollingWheel
 
 # Excitations -----------------------------------------------------------------------------------------
 

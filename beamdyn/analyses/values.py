@@ -17,7 +17,7 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.results.columns import known_unit
 from beamdyn.files.scenes import as_velocity
-from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.motion.rolling import RollingWheel
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.inputs import Quantity

@@ -24,7 +24,7 @@ from beamdyn.common.results.pictures import new_figure
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.modes.critical import CriticalPoint
 from beamdyn.modes.locus import Locus
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.crossings import Crossings, label_crossing
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system

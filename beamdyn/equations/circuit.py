@@ -35,7 +35,7 @@ BLOCK = "circuit"  # name of the block of the circuit's coordinate
 _POINTS = 40  # number of points between breakpoints at which the curvature across the width is integrated
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Circuit:
     """Electrodes with a load resistance, coupled to equations of motion with n coordinates.
 
@@ -58,7 +58,7 @@ class Circuit:
     bent: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Voltage:
     """Voltage [V] or other output: `row` (n,) times the coordinates (order 0) or their rates (order 1)."""
 

@@ -20,7 +20,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Cells:
     """Cells of a beam: parts on which the trial functions of a discretization are smooth.
 

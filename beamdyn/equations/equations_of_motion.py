@@ -23,7 +23,7 @@ from beamdyn.equations.circuit import BLOCK, Circuit, Voltage, charge_terms, flu
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.fields.field import Deflection, Load, SectionFunctions, Term
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_at_unit_speed, root_motion
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import Mount
 
 # Both constants are fitted to the rounding errors of 720 frequencies of random scenes, computed by
@@ -34,7 +34,7 @@ BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative 
 ROUNDING_SIZE = 40
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SteadyPencil:
     """Equations at steady speed omega: M q'' + (C + omega G) q' + (K0 + omega^2 K2) q = omega^2 f2.
 
@@ -81,7 +81,7 @@ class SteadyPencil:
         return not (np.count_nonzero(self.C) or np.count_nonzero(self.G))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Shape:
     """Coordinates of a field as a linear function of the coordinates of the equations of motion.
 
@@ -97,7 +97,7 @@ class Shape:
     matrix: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Equations:
     """Equations of motion of a scene in the coordinates of one discretization, or in modal coordinates.
 

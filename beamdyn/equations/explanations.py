@@ -11,7 +11,7 @@ from typing import TypeAlias
 import numpy as np
 
 from beamdyn.equations.root_motion import RootMotion, root_motion
-from beamdyn.scene.motion import MotionSample, SteadyRotation
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor, tip_inertia
@@ -35,7 +35,10 @@ class SampledScene:
     @cached_property
     def sample(self) -> MotionSample:
         """Motion of the carrier at representative times."""
-        motion = self.scene.motion or SteadyRotation(1.0)
+        motion = self.scene.motion
+        if motion is None:
+            turned = np.linspace(0, _TURNS * 2 * math.pi, _SAMPLES)
+            return replace(MotionSample.steady(np.ones(_SAMPLES)), angle=turned)
         start = min(motion.steady_start, motion.end)
         if not math.isfinite(start):
             start = max(_HORIZON, *motion.breakpoints, 0.0)

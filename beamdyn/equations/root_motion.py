@@ -8,7 +8,7 @@ from typing import Literal
 
 import numpy as np
 
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 
 Quantity = Literal[
@@ -18,7 +18,7 @@ _UNIT_SPEED = MotionSample.steady(1.0)  # the carrier rotates at 1 rad/s
 CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RootMotion:
     """Quantities of the root's motion that multiply terms of the equations, as arrays over time.
 

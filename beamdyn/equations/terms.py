@@ -17,7 +17,7 @@ from beamdyn.equations.explanations import Explanation, SampledScene
 from beamdyn.equations.fields import FIELDS
 from beamdyn.equations.fields.field import Load, Term
 from beamdyn.equations.ritz import Ritz
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.scene.scene import Scene, check_scene
 
 _BASIS = Ritz(3)  # any small basis, as the list of terms does not depend on the basis

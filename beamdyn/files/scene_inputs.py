@@ -20,7 +20,8 @@ from beamdyn.common.edge.units import InvalidInput, quantity
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.harvester import Harvester
-from beamdyn.scene.motion import KINDS, Rotation
+from beamdyn.scene.motion.kinds import KINDS
+from beamdyn.scene.motion.rotations import Rotation
 from beamdyn.scene.mount import Damping, Mount
 from beamdyn.scene.physics import AUTO, AUTO_NAME, Physics
 from beamdyn.scene.points import PointMass, PointSpring, TipLoad, TipMass

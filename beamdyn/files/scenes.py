@@ -28,7 +28,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.inputs.described import described_hints, description, kinds_of
 from beamdyn.common.results.columns import DisplayUnits, known_unit
 from beamdyn.files.scene_inputs import PLACES, VARYING, SceneInput
-from beamdyn.scene.motion import KINDS
+from beamdyn.scene.motion.kinds import KINDS
 from beamdyn.scene.motion.oscillating import check_record_times
 from beamdyn.scene.numbers import unit_of
 from beamdyn.scene.scene import Scene

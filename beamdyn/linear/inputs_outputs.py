@@ -14,7 +14,7 @@ from beamdyn.equations.root_moment import strain_per_moment
 from beamdyn.equations.root_motion import Quantity, root_motion
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.harvester import Electrodes
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.names_elsewhere import GIVE_IT
 from beamdyn.scene.points import ACROSS, ALONG_BENDING, Direction, direction_of

@@ -40,7 +40,7 @@ from beamdyn.linear.inputs_outputs import (
     StrainAtRoot,
 )
 from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import exact_cos_sin
 from beamdyn.scene.scene import Scene
 

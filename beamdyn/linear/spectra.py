@@ -29,7 +29,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.words import Words
 from beamdyn.linear.inputs_outputs import BaseMotion, Excitation, as_excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
-from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.motion.rolling import RollingWheel
 from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 from beamdyn.scene.scene import Scene
 

@@ -47,7 +47,7 @@ from beamdyn.linear.transfer import check_stable
 from beamdyn.loads.load_rows import LoadRows, per_force, span_rows
 from beamdyn.loads.stations import SpanStations, StationOutputs
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.scene import Scene
 
 _TURN = 2 * np.pi

@@ -27,7 +27,7 @@ from beamdyn.loads.stations import (
     with_neighbours,
 )
 from beamdyn.modes.repeated import repeatable
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.steady import periodic_system
 from beamdyn.steady.harmonic_balance import convolution_matrix, solve_harmonic_balance
 from beamdyn.steady.largest_over_phases import largest_over_phases

@@ -18,7 +18,8 @@ from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.inputs.described import description, kinds_of, part_at, with_parts
 from beamdyn.scene.beam import ANGLE_UNITS, OF_ANY_SIGN, OFFSETS, PROPERTY_UNITS, Beam, TipMass
 from beamdyn.scene.harvester import Harvester
-from beamdyn.scene.motion import KINDS, Motion
+from beamdyn.scene.motion.base import Motion
+from beamdyn.scene.motion.kinds import KINDS
 from beamdyn.scene.mount import Damping, Mount
 from beamdyn.scene.points import PointMass, PointSpring
 from beamdyn.scene.profile import Profile, as_profile, to_profile

@@ -17,7 +17,7 @@ from beamdyn.common.results.result import Provenance, Result
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.common.words import Named, Setting, Words
 from beamdyn.scene.beam import OFFSETS, Beam
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.scene.mount import NO_DAMPING, Damping, Mount, aligned_cos_sin, check_one_kind_of_ratios
 from beamdyn.scene.names_elsewhere import GIVE_OR_COMPUTE, GIVE_OR_RATIO, RECTANGULAR
 from beamdyn.scene.physics import (

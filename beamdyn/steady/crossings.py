@@ -17,7 +17,7 @@ from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_changes import find_unlisted, left_out_of_modes, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.scene.scene import SceneResult
 
 KINDS = ("forced", "parametric")

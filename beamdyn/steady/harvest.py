@@ -27,7 +27,7 @@ from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import reduce_to_modes
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.harvester import Electrodes
-from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.motion.rolling import RollingWheel
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import list_speeds
 from beamdyn.steady.largest_over_phases import largest_over_phases

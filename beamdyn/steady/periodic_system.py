@@ -19,7 +19,8 @@ import numpy as np
 
 from beamdyn.common.words import Words
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.scene.motion import Line, Motion, MotionSample, SteadyRotation
+from beamdyn.scene.motion.base import Line, Motion, MotionSample
+from beamdyn.scene.motion.rotations import SteadyRotation
 from beamdyn.scene.names_elsewhere import ROLLING_WHEEL
 
 Pair = tuple[int, int]  # harmonic (j, k): j of rotation, k of the road

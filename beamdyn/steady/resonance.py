@@ -27,7 +27,7 @@ from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modes.modal.model import Model, plane_share
 from beamdyn.modes.modal.solvers import UncoupledSolver, solve_over_speeds, track
 from beamdyn.modes.model_error.effect_choice import choose_physics
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.scene.names_elsewhere import WITH_WHEEL
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, refuse_tip_load, warn_of_left_out, warn_of_static_deflection

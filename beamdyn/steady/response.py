@@ -30,7 +30,7 @@ from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.repeated import repeatable
 from beamdyn.scene import validity
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import check_steady_state, name_line

@@ -19,7 +19,7 @@ from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choo
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
 from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.steady.harmonic_balance import solve_harmonic_balance
 from beamdyn.steady.periodic_system import (

@@ -16,7 +16,7 @@ from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.many_designs import speeds_of_meeting
 from beamdyn.modes.modal.model import Model
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.scene.names_elsewhere import WITH_WHEEL
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene

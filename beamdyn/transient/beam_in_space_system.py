@@ -19,7 +19,7 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import RootMotion
 from beamdyn.modes.modal.equilibrium import Branch
 from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.transient.system import ModalSystem
 
 _STEP = 1e-7  # relative step of finite differences with respect to the coordinates

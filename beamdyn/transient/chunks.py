@@ -15,7 +15,7 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import FEWEST_MODES, ModalBasis, Model, find_speed_range
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.integration import integrate
 from beamdyn.transient.problem import choose_for_basis

@@ -19,7 +19,7 @@ from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choo
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.equilibrium import find_bent, follow_to, load_by_rotation
 from beamdyn.modes.modal.model import SPEED_SAMPLES, ModalBasis, Model
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.along_path import distance_along_path

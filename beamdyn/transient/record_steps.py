@@ -23,7 +23,7 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from beamdyn.equations.root_motion import RootMotion
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.transient import gauss
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.weakly_modulated import propagate_modulated

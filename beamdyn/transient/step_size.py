@@ -10,7 +10,7 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import refine
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.transient.gauss import Segment
 from beamdyn.transient.record_steps import smooth_piece_ends
 from beamdyn.transient.system import ModalSystem

@@ -14,7 +14,7 @@ import numpy as np
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.equations.root_motion import CONSTANT_AT_STEADY_SPEED, Quantity, RootMotion, root_motion
 from beamdyn.modes.modal.model import SPEED_SAMPLES
-from beamdyn.scene.motion import Motion, MotionSample
+from beamdyn.scene.motion.base import Motion, MotionSample
 from beamdyn.transient.gauss import components
 from beamdyn.transient.weakly_modulated import ModulatedSystem
 

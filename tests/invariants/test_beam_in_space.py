@@ -22,7 +22,7 @@ from beamdyn.equations.beam_in_space.tip_forces import TipForces
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import ModalBasis, Model
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.profile import to_profile
 from beamdyn.transient.beam_in_space_system import BeamInSpaceSystem
 from beamdyn.transient.elastica_steps import propagate_elastica

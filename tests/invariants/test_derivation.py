@@ -22,7 +22,7 @@ from sympy.polys.rings import ring
 
 from beamdyn.equations.assembly import assemble_equations
 from beamdyn.scene.beam import Beam, PointMass, TipMass
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene

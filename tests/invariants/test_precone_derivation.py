@@ -15,7 +15,7 @@ from sympy import QQ
 import beamdyn as bd
 from beamdyn.equations.assembly import assemble_equations
 from beamdyn.equations.root_motion import root_motion
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from tests.invariants import test_two_planes_derivation as flat
 from tests.invariants.power_spaces import PowerSeries
 from tests.invariants.test_two_planes_derivation import assert_equal

@@ -14,7 +14,7 @@ from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import RootMotion
 from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.stations import SpanStations, stations_at
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 
 LENGTH = 1.7
 TAPER = np.polynomial.Polynomial([3.0, -1.2, 0.4])

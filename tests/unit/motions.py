@@ -4,16 +4,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from beamdyn.scene.motion import (
-    MotionSample,
-    RoadWave,
-    RollingWheel,
-    RotationFunction,
-    SampledRotation,
-    SpinUp,
-    SteadyRotation,
-    UserMotion,
-)
+from beamdyn.scene.motion.base import MotionSample
+from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
+from beamdyn.scene.motion.rotations import RotationFunction, SampledRotation, SpinUp, SteadyRotation
 
 PUBLISHED = RollingWheel(0.3, SpinUp(55.0, 10.0), RoadWave(0.3, velocity_amplitude=0.01))
 TABLE = SampledRotation([0, 1, 2.5, 3, 5], [0, 4, 9, 9.5, 11])

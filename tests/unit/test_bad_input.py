@@ -11,7 +11,7 @@ from numpy.polynomial import Polynomial
 
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.motion import SteadyRotation
+from beamdyn.scene.motion.rotations import SteadyRotation
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Profile, Table, as_profile

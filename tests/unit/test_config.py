@@ -17,7 +17,8 @@ from beamdyn.common.screens.form_entries import entries_of, tables_of, toml_of
 from beamdyn.files.scene_inputs import ENTRIES, PLACES, SceneInput
 from beamdyn.files.scenes import load_scene, parse_scene, scene_from_dict
 from beamdyn.scene.beam import Beam, PointMass, TipMass
-from beamdyn.scene.motion import RoadWave, RollingWheel, SampledRotation, SpinUp, SteadyRotation
+from beamdyn.scene.motion.rolling import RoadWave, RollingWheel
+from beamdyn.scene.motion.rotations import SampledRotation, SpinUp, SteadyRotation
 from beamdyn.scene.mount import Mount
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.profile import Table

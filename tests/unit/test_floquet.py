@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.scene.motion import check_consistent
+from beamdyn.scene.motion.base import check_consistent
 from beamdyn.studies.floquet.interpolation import interpolate_on_grid
 from beamdyn.studies.floquet.monodromy import Monodromy, period_of
 from beamdyn.studies.floquet.multipliers import multipliers_of

@@ -10,19 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import beamdyn
-from beamdyn.scene.motion import (
-    Line,
-    RoadWave,
-    RollingWheel,
-    Rotation,
-    RotationFunction,
-    SampledRotation,
-    SpinUp,
-    SteadyRotation,
-    UserMotion,
-    check_consistent,
-    check_picklable,
-)
+from beamdyn.scene.motion.base import Line, check_consistent, check_picklable
+from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
+from beamdyn.scene.motion.rotations import Rotation, RotationFunction, SampledRotation, SpinUp, SteadyRotation
 from tests.unit.motions import (
     CORNERS,
     HEIGHT,

@@ -7,17 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from beamdyn.scene.motion import (
-    MotionSample,
-    RoadWave,
-    RollingWheel,
-    RotationFunction,
-    SampledRotation,
-    SpinUp,
-    SteadyRotation,
-    UserMotion,
-    check_consistent,
-)
+from beamdyn.scene.motion.base import MotionSample, check_consistent
+from beamdyn.scene.motion.rolling import RoadWave, RollingWheel, UserMotion
+from beamdyn.scene.motion.rotations import RotationFunction, SampledRotation, SpinUp, SteadyRotation
 from tests.unit.motions import (
     FUNCTION,
     PUBLISHED,

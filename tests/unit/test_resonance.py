@@ -14,7 +14,7 @@ import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.line_roots import bracket
-from beamdyn.scene.motion import Motion, MotionSample
+from beamdyn.scene.motion.base import Motion, MotionSample
 from benchmarks.cases.scenes import HARVESTER
 
 

@@ -12,7 +12,7 @@ import scipy.linalg
 import beamdyn as bd
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.model import Model
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.steady.periodic_system import periodic_system
 from beamdyn.steady.stability import growth_rate
 from benchmarks.cases.scenes import HARVESTER

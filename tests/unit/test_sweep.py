@@ -9,7 +9,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.edge.views import rows_of
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.transient.step_size import TooManySteps
 from benchmarks.cases.scenes import AFTER_SHORT_SPIN_UP, HARVESTER, SHORT_SPIN_UP
 

@@ -12,7 +12,7 @@ from numpy.polynomial import Polynomial as P
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.transient.trajectory import Trajectory
 
 LENGTH, MASS, STIFFNESS, SECOND = 1.2, 2.0, 60.0, 900.0

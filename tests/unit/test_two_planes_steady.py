@@ -22,7 +22,7 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.model import Model
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import periodic_system
 from beamdyn.steady.stability import growth_rate

@@ -20,7 +20,7 @@ from beamdyn.common.results.pictures import Figure, figure_of
 from beamdyn.common.results.statements import said_in
 from beamdyn.common.words import supported
 from beamdyn.equations.effects import modelled_directions, words_of_directions
-from beamdyn.scene.motion import RollingWheel
+from beamdyn.scene.motion.rolling import RollingWheel
 
 _DIGITS = 6  # largest number of digits of a deflection: modal truncation errors exceed further digits
 # Relative error that is assumed for a deflection whose error is not estimated.

@@ -54,7 +54,7 @@ from beamdyn.equations.fields.field import Deflection, Load, Term
 from beamdyn.equations.ritz import Ritz
 from beamdyn.equations.root_motion import Quantity, RootMotion, root_motion
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.motion import MotionSample
+from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import ONE
 from beamdyn.scene.scene import Scene

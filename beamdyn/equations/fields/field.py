@@ -18,7 +18,7 @@ from beamdyn.equations.root_motion import Quantity, RootMotion
 from beamdyn.scene.scene import Scene
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Term:
     """Term of the left-hand side: factor * quantity(t) * matrix * (time derivative of coordinates).
 
@@ -51,7 +51,7 @@ class Term:
         return self.factor * getattr(root, self.quantity)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Load:
     """Term of the right-hand side: factor * quantity(t) * vector in the equations of the field `rows`."""
 
@@ -66,7 +66,7 @@ class Load:
         return self.factor * getattr(root, self.quantity)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Deflection:
     """Transverse deflection of the beam by one field: trial functions, and loads on them.
 
@@ -128,7 +128,7 @@ class Coordinates(Protocol):
         ...
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FieldEquations:
     """Contribution of a field to the equations of motion of a scene.
 

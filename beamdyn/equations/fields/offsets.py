@@ -38,7 +38,6 @@ from beamdyn.equations.fields.transverse import Pair, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.motion import SteadyRotation
 from beamdyn.scene.mount import aligned_cos_sin, exact_cos_sin
 from beamdyn.scene.profile import ONE, Profile
 from beamdyn.scene.scene import Scene
@@ -102,7 +101,7 @@ _C, _T = 0, 2
 _TURN = 2  # index of the rotation by torsion, after the two tilts towards e1 and e2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SectionMotion:
     """Motion of the sections that a field describes: a displacement of the axis or a rotation.
 
@@ -213,7 +212,7 @@ class _CoupledMatrix(NamedTuple):
             yield place, self.mirrored * self.matrix.T
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Offsets:
     """Terms and loads due to offsets of a scene's section centres, over function spaces.
 
@@ -285,7 +284,7 @@ class Offsets:
         are returned, as the others are 0.
         """
         scene = self.scene
-        steady = scene.motion is None or isinstance(scene.motion, SteadyRotation)
+        steady = scene.motion is None or scene.motion.is_uniform
         if steady and not scene.gravity and not aligned_cos_sin(scene.mount.setting_angle)[1]:
             return [each for each in self.accelerations if each[0] in ("root_axial", "speed_squared")]
         return self.accelerations

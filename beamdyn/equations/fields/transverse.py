@@ -49,7 +49,7 @@ _QUARTER_TURN = np.array([[0.0, 1.0], [-1.0, 0.0]])
 _ROOT_ACCELERATIONS: tuple[Quantity, Quantity] = "root_transverse", "root_across"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Trial:
     """Trial functions of a transverse field of a scene, with values at the tip.
 

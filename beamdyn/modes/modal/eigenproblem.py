@@ -47,7 +47,7 @@ _EPS = np.finfo(float).eps
 Factored: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Eigen:
     """Lowest k modes at each of S speeds.
 

@@ -52,7 +52,7 @@ _FEW = 1e-9  # relative difference of two bases above which one field may have t
 Parts: TypeAlias = tuple[float, float, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EstimatedModes:
     """Modes for a batch of speeds, with estimated errors of their eigenvalues.
 

@@ -30,7 +30,7 @@ from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
 from beamdyn.modes.modal.solvers import solver_of
-from beamdyn.scene.motion import Motion
+from beamdyn.scene.motion.base import Motion
 from beamdyn.scene.mount import RIGHT_ANGLE
 from beamdyn.scene.scene import Scene, check_axis
 from beamdyn.scene.validity import list_speeds, warn_of_static_deflection, warn_of_strain

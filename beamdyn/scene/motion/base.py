@@ -22,7 +22,7 @@ _ROUNDING = 1e-12
 Kinematics = tuple[np.ndarray, np.ndarray, np.ndarray]  # angle, speed and angular acceleration
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MotionSample:
     """Motion of the carrier at some times; all arrays have the shape of the times.
 
@@ -92,7 +92,7 @@ class Motion(OneLine, ABC):
     5. A translation that lasts at steady speed gives `lines`, `road_multiple`, `road_acceleration` and
        `steady_acceleration`, on which the steady response and the resonance speeds rest.
     6. A motion that repeats itself gives `rates`, on which its stability rests.
-    7. To be available in files and forms, it must be listed in `KINDS` of `beamdyn.scene.motion`.
+    7. To be available in files and forms, it must be listed in `KINDS` of `beamdyn.scene.motion.kinds`.
 
     Examples
     --------
@@ -101,6 +101,7 @@ class Motion(OneLine, ABC):
     """
 
     no_steady_state: ClassVar[str] = ""  # reason for no steady state, with a remedy; empty otherwise
+    is_uniform: ClassVar[bool] = False  # whether it is a rotation at constant speed about a fixed centre
 
     @abstractmethod
     def at(self, t: np.ndarray) -> MotionSample:

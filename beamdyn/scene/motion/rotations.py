@@ -105,6 +105,7 @@ class SteadyRotation(Rotation):
     5.0
     """
 
+    is_uniform: ClassVar[bool] = True
     speed: Annotated[float, Described("rad/s", "omega", "angular speed of the carrier")]
 
     def __post_init__(self) -> None:

@@ -24,7 +24,7 @@ from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import BENDING, OTHER_KINDS
 from beamdyn.modes.model_error.left_out_changes import nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.steady.crossings import left_out_of_crossings
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system

@@ -11,7 +11,7 @@ from beamdyn.modes.locus import Locus
 from beamdyn.modes.modal.error_estimate import solve_with_error
 from beamdyn.modes.modal.line_roots import ROUNDING, coincides, find_roots
 from beamdyn.modes.modal.model import plane_share
-from beamdyn.scene.motion import Line
+from beamdyn.scene.motion.base import Line
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.words import Words
 from beamdyn.equations.equations_of_motion import Equations
-from beamdyn.scene.motion import Rotation
+from beamdyn.scene.motion.rotations import Rotation
 from beamdyn.scene.names_elsewhere import REPEATING
 from beamdyn.scene.scene import Scene
 from beamdyn.transient.gauss import step_maps, tableau
