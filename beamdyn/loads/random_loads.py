@@ -259,7 +259,7 @@ def random_loads(
     )
     drive, spectrum = random_input(scene, speed, psd, input)
     check_damped(scene)
-    if not isinstance(spectrum, PowerSpectrum):  # loads by white noise are infinite
+    if not isinstance(spectrum, PowerSpectrum):  # white noise, for which mean squares of loads are infinite
         bound = "mean squares of loads by white noise are not finite"
         raise InvalidValue("psd", psd, bound, "give a PowerSpectrum, which ends at some frequency")
     asked = AskedLoads.of(scene, at, points, youngs_modulus)
@@ -308,7 +308,7 @@ def _warn_of_few(found: RandomStatistics, duration: float) -> Iterator[str]:
     """Yield a warning if the duration is too short for statistics of the largest value."""
     crossings = found.crossings[found.rms > 0]
     if len(crossings) and duration * crossings.min() < _FEW:
-        yield f"duration = {duration:g} s has few vibrations: largest values are rough; give a longer one"
+        yield f"duration = {duration:g} s is below {_FEW:g} vibrations, too few for maxima; give a longer one"
 
 
 def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpeed) -> Iterator[str]:
@@ -317,5 +317,5 @@ def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpee
         share = percent(float(error.max() / moment.max()))
         yield (
             f"with {counted(model.modes, 'mode')} the estimated error of the bending moment is {share} of "
-            'the largest; give more modes, or "auto"'
+            'the largest moment; give more modes, or "auto"'
         )

@@ -132,7 +132,10 @@ class StationOutputs:
 
 
 class Sections(NamedTuple):
-    """Outputs at stations; points of the sections, (stations, points, 2) [m]; notes on neglected strain."""
+    """Sections at S stations: their outputs, and P points in each section at which strain is computed.
+
+    `points` has the shape (S, P, 2) [m]; `notes` name contributions that the strain does not include.
+    """
 
     outputs: StationOutputs
     points: np.ndarray
@@ -197,7 +200,8 @@ def sections_at(
     axial = np.zeros((len(xi), 1, loads))
     if beam.axial_stiffness is not None:
         axial[:, 0, 0] = 1 / beam.axial_stiffness(xi)
-    # The stress is in equilibrium with the moment, even where the clamp hinders the strain across the width.
+    # The clamp hinders the strain across the width and so stiffens the section.  This reduces the curvature
+    # and the strain, but not the stress: the stress follows from the curvature without the clamp's effect.
     strain, strain_by_stress = (
         axial - np.einsum("spi,sik->spk", at_stations[..., :planes], each) for each in (curvature, of_free)
     )
@@ -226,7 +230,7 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
     for side, name in enumerate(("first", "second")):
         limit = half[:, side].min()  # nan: the section's edge is not known
         bad = np.abs(array[:, side]) > limit * (1 + _ROUNDING)
-        bound = f"it lies outside the section: in the {name} direction the smallest one reaches {{limit}}"
+        bound = f"it lies outside the section: the smallest section reaches {{limit}} in the {name} direction"
         remedy = "leave {field} out, for the outermost points"
         refuse(bad, "points", array[:, side], "m", bound, remedy, limit=limit)
     return array

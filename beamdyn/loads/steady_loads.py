@@ -248,7 +248,8 @@ def lines_of_response(
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
     used = dict.fromkeys([*rows.load, *rows.position, *rows.velocity])
     spectra = periodic_system.expand_quantities(equations, used, motion, speeds)
-    reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root motion, then of their products
+    # Harmonics in the loads: those of the coordinates, of the root's motion, and of products of both.
+    reached = set(pairs) | {(0, 0)}
     for quantity in rows.load:
         reached |= periodic_system.list_harmonics(spectra[quantity])
     for quantity in (*rows.position, *rows.velocity):

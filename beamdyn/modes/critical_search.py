@@ -49,7 +49,7 @@ def models_of_critical_speed(
     """Iterate over the models for the search of a critical speed, from coarse to fine: see `list_models`.
 
     The first model is built at once, so that a beam with too many segments is refused even if no model needs
-    to be solved.
+    to be solved.  The models are chosen for the error `target`; if `cheapest`, they start with the smallest.
     """
     named = isinstance(discretization, str)
     modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
@@ -93,11 +93,11 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
     fine_softening, coarse_softening = solver.softening, coarse.solver.softening
     distance = fine_softening - coarse_softening
     softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
-    if not 0 < softening < np.inf:  # the condition is False for nan, too
+    if not 0 < softening < np.inf:  # this is true for nan, too
         return FoundSpeed(model, coarse, np.inf, np.inf, np.inf)
     rounding = solver.critical_rounding
     noise, left = rounding + noise, abs(distance)
-    if order is not None:  # short segments may prevent a mesh with half the elements of another
+    if order is not None:  # extrapolation needs halved meshes, which short segments may prevent
         half = coarse.coarser.solver
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])

@@ -177,7 +177,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
         return x, y, np.real(self.surface(x, eta)), np.real(self.shape(x, 1))
 
     def _over_length(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Divide positions x by the length; raise a ValueError if one [m] is not on the beam."""
+        """Divide positions x [m] by the length; raise a ValueError if one of them is not on the beam."""
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")

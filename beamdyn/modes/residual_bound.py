@@ -166,7 +166,10 @@ class Enclosure(ABC):
         return self._lower_form(*self._coefficients(z))
 
     def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
-        """Compute the form Q_z - R/q (see module) at z = 0: if positive definite, lower speeds are stable."""
+        """Compute the form Q_z - R/q (see module) at z = 0.
+
+        If it is positive definite, the beam is stable at this and at all lower speeds.
+        """
         return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
@@ -184,7 +187,7 @@ class Enclosure(ABC):
         return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
 
     def _coefficients(self, z: float) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the coefficients c_j(z) of the forms (see module), and sums of absolute terms."""
+        """Compute the coefficients c_j(z) of the forms (see module), and the sums of their |terms|."""
         squared = self.speed**2
         return squared * self.spin - z * self.mass, squared * self.spin_terms + abs(z) * self.mass
 
@@ -385,7 +388,7 @@ class CoupledEnclosure(Enclosure):
         return self.unit * products**2 + variation * len(self.stiffness) * moments**2
 
     def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
-        """List a measure of each of the seven forms (a trace or a bound) in the order of the class.
+        """List a trace or bound of each of the seven forms, in the order of the docstring of the class.
 
         `traces` has it for both tensions, the mass and the slope at the tip, `twisting` for the last form.
         """

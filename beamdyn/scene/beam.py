@@ -135,7 +135,8 @@ class Beam(FieldsOnly, OneLine):
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
             made = self.section.properties.items()
             if not all(input_checks.alike(getattr(self, name), profile) for name, profile in made):
-                set_fields(self, section=None)  # the section no longer determines a replaced property
+                set_fields(self, section=None)  # a property was replaced and no longer follows from the
+                section
         if self.has_offsets:  # offsets exclude a rectangular section, whose centres coincide
             set_fields(self, section=None)
         along = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")

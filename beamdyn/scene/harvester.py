@@ -20,10 +20,11 @@ moment, and q the charge per length:
 =========  =====================  ==========================
 
 b is the width, h the thickness of the beam, t that of a layer; z = (h + t)/2 is the distance of the middle of
-a layer from the middle of the beam, and z_n the distance of the neutral axis from there, which a layer on one
-side only moves.  As no axial force resists, a voltage on such a layer also stretches the beam, by the strain
-e b v/(E A); this adds to the capacitance.  Series and parallel as in Erturk and Inman (2009), Smart Materials
-and Structures 18, 025009; unimorph: own derivation, docs/harvester.md.
+a layer from the middle of the beam, and z_n the distance of the neutral axis from the middle of the beam,
+which is not 0 if only one side has a layer.  As no axial force resists, a voltage on such a layer also
+stretches the beam, by the strain e b v/(E A); this adds to the capacitance.  The rows "series" and "parallel"
+follow Erturk and Inman (2009), Smart Materials and Structures 18, 025009; "unimorph": own derivation,
+docs/harvester.md.
 """
 
 from __future__ import annotations
@@ -67,8 +68,9 @@ class Harvester(FieldsOnly):
         Piezoelectric stress constant [C/m2], of either sign, modulus at constant field [Pa] and permittivity
         at constant strain [F/m], of a layer that is free across and through its thickness: the reduced
         constants of a beam, d31/s11E, 1/s11E and eps33T - d31^2/s11E.  Entries of a data sheet's stiffness
-        matrix, for a layer held in both, differ: of PZT-5A c11E is twice as large, and e31 half as large.
-        A wide strip is held across near its clamp, which is modelled if `poissons_ratio` is given.
+        matrix differ, because they are for a layer whose strain in both directions is prevented: of PZT-5A
+        c11E is twice as large, and e31 half as large.  Near its clamp a wide strip cannot strain across,
+        which is modelled if `poissons_ratio` is given.
     d31, s11e, eps33t : float, optional
         In their place the strain constant [m/V], compliance at constant field [1/Pa] and permittivity at
         constant stress [F/m], as data sheets have them.

@@ -46,7 +46,7 @@ _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
 # Smallest number of elements on a segment: enough for a mesh with a quarter of them, the coarsest of three;
 # and on a segment with a boundary layer: enough for a mesh with half of them to resolve the layer.
 _ON_EACH, _ON_LAYERS = 4, 8
-_SHORT = 0.02  # segment length x/L below which elements of a quarter of it have large rounding errors
+_SHORT = 0.02  # segment length x/L below which its quarters, as elements, would have large rounding errors
 _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers
 # Largest ratio of all further changes of a critical speed to its change by the next finer model.
 _ALL_FURTHER = 2.0
@@ -193,7 +193,10 @@ def _choose(
 
 
 def _refine_until_buckled(model: Model, speed: float) -> Model:
-    """Refine a model while its straight beam buckles above a speed [rad/s], but finer ones perhaps below."""
+    """Refine a model until its critical speed is at most `speed` [rad/s], or can no longer fall to it.
+
+    The critical speed is that of the straight beam; it falls as the model is refined.
+    """
 
     def finer(model: Model) -> Model | None:
         refined = refine_model(model)

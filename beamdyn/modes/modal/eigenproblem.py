@@ -214,7 +214,7 @@ class Solver(Eigensolver):
         return found
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes; of conservative equations at all speeds at once."""
+        """Compute the `count` lowest modes at each speed; if conservative, for all speeds at once."""
         with explained():
             if not self.pencil.conservative:
                 modes = [self._solve_coupled(speed, count) for speed in speeds]

@@ -36,7 +36,10 @@ _COILED = 2 * math.pi  # angle of a section [rad] above which no loss of stabili
 
 
 def load_by_rotation(elastica: RotatingBeam, scale: float) -> Loading:
-    """Build the load by rotation, whose parameter is the squared speed [rad2/s2], of magnitude `scale`."""
+    """Build the load by rotation, which grows with the squared speed as its parameter p [rad2/s2].
+
+    `scale` is the change of p that counts like an angle of 1 rad in the arc length: see `Loading`.
+    """
     return Loading(elastica, elastica.turning, scale, {"unity": 1.0} if elastica.load else {})
 
 
@@ -245,9 +248,10 @@ class DeflectedSolver(Solver):
         return np.array([self._found[abs(v)] for v in speeds])
 
     def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> None:
-        """Store the equilibria that are close to those of another discretization, and as stable.
+        """Store the equilibria that are close to those of the discretization of `guide`.
 
-        Speeds at which there is none are left out.
+        A speed is left out if there is no such equilibrium, or if its stiffness has a different number of
+        negative eigenvalues than that of `guide`.
         """
         for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
             near = self.elastica.nearest(guide.elastica, of_guide)

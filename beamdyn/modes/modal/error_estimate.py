@@ -27,21 +27,23 @@ _OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the roundi
 # Ratio of the difference between the two coarser meshes to the smallest stated error, as the difference
 # between the two finer ones may be small by chance.
 _LEAST_OF_BEFORE = 64.0
-# Largest ratio of differences that is transferred from a lower mode to a higher one, as the same steep change
-# of properties affects both.
+# Largest ratio of the differences between successive meshes that a higher mode takes over from a lower one.
+# It does so because a steep change of properties slows the convergence of both.
 _SHARED = 0.75
 # Ratio of the difference of two meshes to their rounding errors, below which it may be rounding alone.
 _OF_NOISE = 4.0
-# Fractions that count as the error of a mode: of its own distance from the coarser basis, and of the largest
-# distance of all modes; then the relative distance above which margins for slow convergence are added.  The
-# values are for a beam with one segment, with several (whose functions converge at different rates), and for
-# irregular convergence.
+# How the error of a mode follows from its distance to the coarser basis.  The first two numbers are the
+# fractions of its own distance, and of the largest distance of all modes, that count as error; the third is
+# the relative distance above which margins for slow convergence are added.  There are such numbers for a beam
+# with one segment, for one with several (whose functions converge at different rates), and for irregular
+# convergence.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-# The same three numbers for a coarser basis with one function less, which may change a mode less than the
-# next function does: convergence always counts as slow.
+# The three numbers, with the meanings given for `REGULAR`, for a coarser basis with one function less.  That
+# function may change a mode less than the next one does, so that convergence always counts as slow.
 _BY_ONE = 1.0, 0.01, 0.0
-# Number of functions across plates up to which the margin was measured (convergence slows down above it), and
-# the fraction of the largest distance of all modes that counts as error.
+# Number of functions across plates up to which the margin `BASES_OF_PLATES` was measured (with more
+# functions, convergence slows down), and the fraction of the largest distance of all modes that counts as
+# error.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
 # Fraction of the lowest squared frequency at rest above which a squared frequency's error is relative to
 # itself.
@@ -183,8 +185,9 @@ def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) 
     # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     bound = (stiffness / mass).min() + model.equations.shift
-    # Errors of squares below the lowest square at rest are relative to it.  The lowest square
-    # need not be computed if the largest relative distance is not that of a square below its bound.
+    # The error of a squared frequency below the lowest one at rest is relative to the latter.  The lowest one
+    # at rest need not be computed unless a squared frequency below its bound has the largest relative
+    # distance.
     if is_needed := size.min() < _ABOVE * bound:
         relative, below = half / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))

@@ -149,7 +149,8 @@ def _order(eigenvalue: np.ndarray) -> np.ndarray:
 
 _FEW = 160  # largest number of speeds that are solved individually
 _INTERVALS = 8, 16, 32  # numbers of intervals between Chebyshev points of the speed, tried in turn
-# The last third of a series' coefficients; their size shows whether the series converges fast enough.
+# The last 1/3 of the coefficients of a Chebyshev series is checked: they are small if the series converges
+# fast enough.
 _HIGHEST = 3
 # Interpolation error of squared frequencies in addition to rounding; the stated error includes it.
 _MISFIT = 1e-12
@@ -297,7 +298,8 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    successor = mac.argmax(axis=2)  # index at the next speed; the sum of MACs is largest
+    # Index of each mode at the next speed.  If this is no permutation, the one with the largest sum of MACs.
+    successor = mac.argmax(axis=2)
     unique = (np.sort(successor, axis=1) == np.arange(k)).all(axis=1)
     for s in np.flatnonzero(~unique):
         successor[s] = assign(-mac[s])

@@ -15,7 +15,7 @@ from beamdyn.common.numerics import solve_lower
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
-_LOW = 0.1  # ratio of squared frequency to shift below which the subtraction would lose digits
+_LOW = 0.1  # ratio of squared frequency to shift below which subtracting the shift would lose digits
 _GRADED = 1e-6  # smallest eigenvalue of a well-conditioned stiffness that is scaled to unit diagonal
 # Smallest eigenvalue of a stiffness at rest, scaled to unit diagonal, that has correct digits.
 _GRADED_AT_REST = 1e-12

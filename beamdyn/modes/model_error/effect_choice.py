@@ -42,10 +42,10 @@ from beamdyn.scene.validity import refuse_bending_in_space
 NOTHING_BARRED: Mapping[str, str] = MappingProxyType({})
 PHYSICS_TOLERANCE = 1e-3  # allowed relative change by neglected effects, unless a tolerance is given
 _SMALL = 0.1  # fraction of the tolerance below which an effect is not added
-_SOLVED = 0.1  # fraction of the tolerance to which the modes changed by effects are computed
+_SOLVED = 0.1  # numerical error allowed in the modes with an added effect, as a fraction of the tolerance
 _MODES = 3  # number of modes by which the physics of a motion is chosen
 _SHORT = 0.2  # computing time [s] below which a result is computed twice, and the shorter time counts
-_ROUGH = 2.0  # largest relative change of a frequency by large deflection, over (deflection/length)^2
+_ROUGH = 2.0  # largest relative change of a frequency by large deflection, divided by (deflection/length)^2
 _BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
 
@@ -291,7 +291,10 @@ class _Candidate:
 
     @property
     def beyond_models(self) -> float:
-        """Relative error that every model here has: errors of the included effects, and the axial strain."""
+        """Relative error that no model of this package avoids.
+
+        It is the sum of the uncertainties of the included effects and the change by the axial strain.
+        """
         missed = (NAMED[name].uncertainty * min(size, 1.0) for name, size in self.included.items())
         return sum(missed, self.strained)
 
@@ -450,7 +453,7 @@ def _cost(scene: Scene, solve: Solve) -> np.ndarray:
     start = perf_counter()
     size = solve(scene)
     time = perf_counter() - start
-    if time < _SHORT:  # other processes would distort short times
+    if time < _SHORT:  # other processes may prolong a short time: measure again, and take the shorter one
         solve(scene)
         time = min(time, perf_counter() - start - time)
     return np.array([time, size])

@@ -200,7 +200,7 @@ def _bent_change_at(
     order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
     try:
         within = bent.solver.solve(speeds, count).eigenvalue[0]
-    except (ArithmeticError, np.linalg.LinAlgError) as error:  # a hinged beam has no unique equilibrium
+    except (ArithmeticError, np.linalg.LinAlgError) as error:  # such as for a hinged beam at any angle
         unknown = np.full(len(eigenvalue), np.nan)
         return unknown, _NOT_FOUND if isinstance(error, np.linalg.LinAlgError) else reason_of(error)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -246,7 +246,9 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
 
     bent, reason = None, ""
     if not model.scene.physics.large_deflection:
-        does = bends(model)  # without transverse load, the straight beam is in equilibrium until it buckles
+        # If rotation does not bend the straight beam, it stays straight until it buckles, so that large
+        # deflection does not change its critical speed.
+        does = bends(model)
         bent, reason = np.array(np.nan if does else 0.0), _NO_CRITICAL_SPEED if does else ""
     return _gather(model.scene, base.scene, change, bent, reason)
 
@@ -399,10 +401,11 @@ def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
 
 
 def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
-    """Yield the modes that a model lacks below the highest that it lists at some speed.
+    """Yield modes of the real body that the model lacks, if they are below its highest listed mode.
 
-    A margin of 3 % above the highest allows for the accuracy of these modes.  The eigenvalues (speeds, modes)
-    are those listed at the speeds [rad/s].
+    A mode is yielded if this holds at one speed at least.  Its frequency is known to 3 %, so that it may
+    exceed that of the highest listed mode by this margin.  `eigenvalue` (speeds, modes) has the eigenvalues
+    [1/s] of the listed modes at the `speeds` [rad/s].
     """
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
     scene, spaces_of = without_large_deflection(model).scene, model.discretization.spaces

@@ -178,7 +178,7 @@ class LeftOutEffects:
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
             change, notes = known[name], []
             if abs(_largest(change)) < _NEGLIGIBLE:
-                if name in self.not_known:  # listed as unknown instead: other values may be large
+                if name in self.not_known:  # not listed as small: changes of other values are unknown
                     continue
             else:
                 first = int(np.nanargmax(np.abs(change)))
