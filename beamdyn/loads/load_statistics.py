@@ -61,7 +61,7 @@ _LEAST = math.e  # smallest number of crossings for which the peak factor is eva
 
 @dataclass(frozen=True)
 class LoadFractions:
-    """Transfer functions H(s) = d + sum r_k / (s - p_k) of outputs at stations, at one harmonic.
+    """Transfer functions H(s) = d + sum r_k / (s - p_k) of outputs at stations, at one harmonic of rotation.
 
     Parameters
     ----------

@@ -308,7 +308,7 @@ def _warn_of_few(found: RandomStatistics, duration: float) -> Iterator[str]:
     """Yield a warning if the duration is too short for statistics of the largest value."""
     crossings = found.crossings[found.rms > 0]
     if len(crossings) and duration * crossings.min() < _FEW:
-        yield f"duration = {duration:g} s is below {_FEW:g} vibrations, too few for maxima; give a longer one"
+        yield f"duration = {duration:g} s has under {_FEW:g} vibrations: maxima are rough; give a longer one"
 
 
 def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpeed) -> Iterator[str]:

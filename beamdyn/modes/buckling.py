@@ -286,7 +286,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
     bending = _tensor(beam, "bending_stiffness", xi, planes)
     springs = np.array(mount.root_stiffnesses)[:planes]
     flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # 1 / smaller principal bending stiffness
-    # Hinges count as rigid here: see the conditions below.
+    # Hinges count as rigid here; the conditions below select the arguments that hold for a hinge.
     root = np.diag([1 / k if k else 0.0 for k in springs])
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
     C = components @ (root + by_bending) @ components.T

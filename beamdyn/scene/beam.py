@@ -135,8 +135,7 @@ class Beam(FieldsOnly, OneLine):
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
             made = self.section.properties.items()
             if not all(input_checks.alike(getattr(self, name), profile) for name, profile in made):
-                set_fields(self, section=None)  # a property was replaced and no longer follows from the
-                section
+                set_fields(self, section=None)  # a property that was replaced does not follow from it
         if self.has_offsets:  # offsets exclude a rectangular section, whose centres coincide
             set_fields(self, section=None)
         along = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")

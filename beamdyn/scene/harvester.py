@@ -155,11 +155,11 @@ class Harvester(FieldsOnly):
         if material.permittivity <= 0:
             bound = "it must be above {limit}, d31^2/s11e: no material has more coupling"
             limit = material.coupling * (self.d31 or 0.0)
-            raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check all three", "F/m", limit)
+            raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check the constants", "F/m", limit)
         nu = self.poissons_ratio
         if nu is not None and material.held_across(nu).permittivity <= 0:
-            bound = "held along and across, a layer would have no permittivity: no material couples so much"
-            raise InvalidValue("harvester.poissons_ratio", nu, bound, "check all four")
+            bound = "without strain along and across, a layer's permittivity would not be positive"
+            raise InvalidValue("harvester.poissons_ratio", nu, bound, "check the constants")
 
     @property
     def material(self) -> Material:
@@ -175,8 +175,8 @@ class Harvester(FieldsOnly):
         Raises
         ------
         ValueError
-            If it is no beam, has no rectangular section, is twisted, carries layers already or ends before
-            them, or its section varies under them.
+            If `beam` is no `Beam`, has no rectangular section, is twisted, carries layers already, or ends
+            before these layers do, or if its section varies under them.
         """
         span, (b, h) = self._span_on(beam), self._sides_on(beam)
         modulus, density = beam.section.youngs_modulus, beam.section.density

@@ -277,7 +277,7 @@ def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str
         return
     name, value = next(iter(section.items()))
     if other := next((name for name in values if name in PROPERTY_UNITS), None):
-        bound = f"beam.{other} does not go together with it, as it follows from the section"
+        bound = f"beam.{other} follows from the section, and cannot be given together with its numbers"
         remedy = f"leave one of them out, or give {SCALE}{other}, which multiplies it"
         raise InvalidValue(f"beam.{name}", value, bound, remedy)
     if beam.section is None:

@@ -185,8 +185,9 @@ class PhysicsChoice:
     not_modelled : tuple of str
         Effects that this package does not model.
     beyond_models : float
-        Estimated relative error of all models of this package, where it is known: a part of each included
-        effect, from comparisons with solid bodies, and the strain by rotation.
+        Estimated relative error that no model of this package avoids, as far as it is known: a fraction of
+        the size of each included effect, found by comparisons with solid bodies, plus the change by the axial
+        strain due to rotation.
 
     Examples
     --------

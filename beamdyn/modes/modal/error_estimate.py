@@ -20,7 +20,8 @@ from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which a comparison of two models gives no estimate
 # Ratio of the difference between successive meshes to the previous difference: the smallest that is used, for
-# an order of convergence above 2; the one assumed if it is unknown; the largest.
+# an order of convergence above 2; the one assumed if it is unknown; the largest for which an error is
+# estimated.
 LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 _HALVED = 0.7  # ratio of the sizes of two meshes above which they do not show the order of convergence
 _OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding error of stiffness entries
@@ -307,7 +308,7 @@ def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
 
 
 def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
-    """Return for each mode and speed whether the exact value of an unresolved higher mode may be lower."""
+    """Return for each mode and speed whether an unresolved higher mode may have a lower exact frequency."""
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest

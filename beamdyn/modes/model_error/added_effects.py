@@ -181,8 +181,8 @@ def can_add(scene: Scene, effect: effects.Effect) -> bool:
 _MOST = 160  # largest number of coordinates of a model that suffices to estimate a change
 _APART = 1e-8  # relative distance kept from an eigenvalue, where the equations are singular
 _AT_CLAMP = 3  # number of functions along each segment, beyond that of modes, to resolve camber near a clamp
-# Number of functions across the width.  The change of a frequency by camber is then too small or too large by
-# 1 % of its part that is due to the clamp, and that by torsion by 0.1 %.
+# Number of functions across the width.  With these, the error is 1 % of the part of the change by camber that
+# is due to the clamp, and 0.1 % for torsion.
 _ACROSS = 4
 _STEPS = 8  # largest number of inverse iterations: one suffices unless the effect is large or modes are close
 # The iteration ends at a step of this size, relative to the change, or relative to the eigenvalue.

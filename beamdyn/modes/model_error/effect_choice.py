@@ -1,12 +1,12 @@
 """Automatic choice of the physics: the effects that a result needs in order to meet a tolerance.
 
 The size of an effect is the relative change that it causes.  Sizes are estimated for the plain beam, an
-Euler-Bernoulli beam that bends in one plane.  The
-largest effect is added, and the others are estimated again for the beam with it, until the sizes of the
-neglected effects, summed for each value of the result, are at most half the tolerance, as an estimate may be
-too low by a factor of two.  Effects below a tenth of the tolerance are not added.  Large deflection excludes
-camber, and in transients, where it is in one plane only, shear, stretch and a second plane; if it and an
-effect that it excludes are needed, the set with the smaller neglected effects is used.
+Euler-Bernoulli beam that bends in one plane.  The largest effect is added, and the others are estimated again
+for the beam with it, until the sizes of the neglected effects, summed for each value of the result, are at
+most half the tolerance, as an estimate may be too low by a factor of two.  Effects below a tenth of the
+tolerance are not added.  Large deflection excludes camber, and in transients, where it is in one plane only,
+shear, stretch and a second plane; if large deflection and an effect that it excludes are both needed, that
+set of effects is used whose neglected effects are smaller.
 """
 
 from __future__ import annotations
