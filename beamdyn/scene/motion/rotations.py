@@ -278,7 +278,7 @@ class SampledRotation(Rotation):
         checks.one_of("interpolation", self.interpolation, get_args(Interpolation))
         t, v = checks.real_array("times", self.times), checks.real_array("speeds", self.speeds)
         if len(t) != len(v) or len(t) < 2:
-            raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give two or more of each")
+            raise ValueError(f"times, speeds: {len(t)} times and {len(v)} speeds; give as many, at least two")
         bound, remedy = "it follows {limit}", "sort the table, drop repeats"
         checks.refuse(np.diff(t) <= 0, "times", t[1:], "s", bound, remedy, limit=t[:-1])
         checks.refuse(
