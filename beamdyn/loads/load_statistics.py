@@ -260,13 +260,13 @@ class RandomStatistics:
     Parameters
     ----------
     mean : ndarray, shape (S, K)
-        Constant part, by the steady rotation [unit of the output].
+        Constant part, due to the steady rotation [unit of the output].
     gravity : ndarray, shape (S, K)
-        Amplitude of the variation by gravity within a turn [same unit].
+        Amplitude of the variation due to gravity during a turn [same unit].
     rms : ndarray, shape (S, K)
-        Root mean square of the random part, over time and over a turn [same unit].
+        Root mean square of the random part, averaged over time and over the angle of rotation [same unit].
     rms_in_turn : ndarray, shape (S, K)
-        Root mean square at the angle of rotation at which it is largest [same unit].
+        Root mean square of the random part at the angle of rotation at which it is largest [same unit].
     rate_rms : ndarray, shape (S, K)
         Root mean square of the time derivative of the random part [same unit / s].
 

@@ -51,9 +51,10 @@ _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 class RandomLoads(SpanLoads):
     """Loads along the span under a random input at one speed: largest magnitudes expected in a duration.
 
-    The fields are those of `SpanLoads`, with the speed as the only case.  Largest magnitudes are sums of the
-    constant part, the amplitude by gravity, and the root mean square of the random part, at the angle of
-    rotation at which that is largest, times a peak factor: estimates for a Gaussian input.
+    The fields are those of `SpanLoads`, with the speed as the only case.  Largest magnitudes are sums of
+    three terms: the constant part, the amplitude due to gravity, and a peak factor times the root mean square
+    of the random part, at the angle of rotation at which that is largest.  They are estimates for a Gaussian
+    input.
 
     Parameters
     ----------
@@ -220,13 +221,13 @@ def random_loads(
     input : BaseMotion, PointForce or str, optional
         As for `random_response`.
     duration : float
-        Duration for which the largest values are expected [s]; by default an hour.
+        Duration [s] whose expected largest values are computed; by default an hour.
     at, points, youngs_modulus
         As for `static_loads`.
     modes
         As for `random_response`.
     tolerance : float
-        Target of the error for "auto", relative to each component's largest value along the span.
+        Allowed error if `modes` is "auto", relative to each component's largest value along the span.
     discretization
         As for `random_response`.
 

@@ -175,7 +175,7 @@ class SpanLoads(SceneResult, JudgedByRepeating):
 
     @property
     def judged_quantity(self) -> str:
-        """Quantity whose model error is stated: strain, or if 0 or unknown the moment, or else the force."""
+        """Quantity whose model error is stated: strain or, where that is 0 or unknown, moment or force."""
         sizes = {name: np.nan_to_num(np.abs(self.values(name))).max(initial=0.0) for name in _JUDGED}
         return next((name for name, size in sizes.items() if size), _JUDGED[-1])
 

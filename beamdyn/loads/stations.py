@@ -222,8 +222,8 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
     """Check that P points (P, 2) are inside every section whose edges are known."""
     array = as_floats(points)
     if array is None or array.ndim != 2 or array.shape[1] != 2 or not 1 <= len(array) <= _MOST_POINTS:
-        many = f"give 1 to {_MOST_POINTS} pairs"
-        bound = f"{many} of distances from the neutral axes, along the section's two directions"
+        pairs = f"1 to {_MOST_POINTS} pairs"
+        bound = f"give {pairs} of distances from the neutral axes, along the section's two directions"
         raise InvalidValue("points", points, bound, "such as [(-0.001, 0.0), (0.001, 0.0)]", "m")
     if not np.isfinite(array).all():
         raise InvalidValue("points", points, "give finite numbers", unit="m")
@@ -269,7 +269,7 @@ def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: n
 
 
 def with_neighbours(stations: SpanStations) -> SpanStations:
-    """Append evenly spaced stations, at which the loads of two models are compared as well."""
+    """Append evenly spaced stations to the given ones: two models are compared at all of them."""
     more = np.linspace(0, 1, _BETWEEN)
     return SpanStations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
 
@@ -282,7 +282,7 @@ def mode_error(
     basis: ModalBasis,
     length: float,
 ) -> np.ndarray:
-    """Estimate the errors of outputs from distances of loads between models, including rounding.
+    """Estimate the errors of outputs, including rounding, from the differences of loads between two models.
 
     At the nodes of the modes that a larger model adds, the distance is small by chance, although other modes
     left out contribute.  So the error at a station follows from the largest distance within half
@@ -327,7 +327,10 @@ def mode_error(
 
 
 def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
-    """Convert errors of 1 + 2 d loads at S stations to errors of K outputs, (..., S, K); errors add up."""
+    """Convert errors of 1 + 2 d loads at S stations to errors of K outputs: shape (..., S, K).
+
+    The errors of the loads add up by magnitude in each output.
+    """
     weights = np.abs(outputs.matrix)
     with np.errstate(invalid="ignore"):  # an infinite error times 0 counts as 0
         return np.where(weights != 0, weights * errors[..., None, :], 0.0).sum(axis=-1)

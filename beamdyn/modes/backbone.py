@@ -182,11 +182,13 @@ SMALL = 0.02
 # Safety factor: ratio of the stated error of the coefficient to the difference between its values at two
 # amplitudes, which may be due to rounding alone.
 _OF_AMPLITUDE = 2.0
-_STEADY = 1e-3  # relative difference of the coefficients of two bases below which these converge steadily
+# Relative difference of the coefficients of two bases below which their convergence counts as steady.
+_STEADY = 1e-3
 # Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.
 _ROUNDED = 1e-7
 _SAMPLES = 16  # number of samples per period, which separate harmonics up to the seventh
-# Relative size of the dynamic stiffness, below which the second harmonic is resonant with another mode.
+# Relative size of the dynamic stiffness at twice the frequency, below which the second harmonic is resonant
+# with another mode.
 _RESONANT = 1e-3
 
 

@@ -61,7 +61,7 @@ class FrequencyBounds(SceneResult):
     width : ndarray, shape (m,)
         Relative width upper / lower - 1; nan where a bound is nan.
     how : str
-        Argument that guarantees the bounds.
+        How the bounds are guaranteed, in words.
     warnings : tuple of str
         Missing bounds and their reasons; also a deflection by rotation that is too large for the model.
     provenance : Provenance

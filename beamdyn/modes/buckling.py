@@ -112,17 +112,17 @@ _ALIGNED = 1e-14  # ratio of a product of inertia to the moments of inertia belo
 
 @dataclass(frozen=True)
 class Buckling:
-    """Decision whether a beam in bending has a critical speed, with the argument.
+    """Decision whether a beam in bending has a critical speed, with the theoretical reason.
 
     Parameters
     ----------
     exists : bool or None
         Whether there is a critical speed; None if this could not be decided.
     why : str
-        Argument that decides, as a sentence.
+        Theoretical reason of the decision, as a clause.
     speed : float or None
-        Critical speed [rad/s], if the argument gives it: 0 if the beam is unstable at every speed, inf if its
-        axial strain passes 1 % first; None if a search is needed.
+        Critical speed [rad/s], if it follows from the theory: 0 if the beam is unstable at every speed, inf
+        if its axial strain passes 1 % first; None if a search is needed.
     none_below : float
         If only the inertia of tilting sections can buckle the beam, a speed [rad/s] below which it does not;
         otherwise 0.
@@ -170,7 +170,7 @@ def decide_buckling(scene: Scene) -> Buckling:
 
 
 def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
-    """Decide whether a slender beam in one plane has a critical speed; if need be, by a string (see module).
+    """Decide whether a slender beam in one plane has a critical speed, if need be by an equivalent string.
 
     The parameters, with the symbols of the module's docstring, are a, the distance of the root from the axis
     of rotation times cos(setting angle), positive for an inward beam [m]; c^2 and s^2; and `tilt`, the part

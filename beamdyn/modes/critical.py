@@ -120,7 +120,7 @@ class CriticalPoint(SceneResult, StatesModelError):
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the critical speed by each neglected effect, of shape ()."""
         if self.of_bent_beam and np.isfinite(self.speed):
-            return nothing_known(self.scene, "changes are not computed for a beam that is already bent")
+            return nothing_known(self.scene, "not computed for a beam that bends before it loses stability")
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)
@@ -334,7 +334,7 @@ def _is_within_theory(model: Model) -> bool:
     if np.isinf(found.error):
         return False
     _, strain = static_load(model, np.array([found.speed]))
-    return not strain[0] > LARGE_STRAIN  # nan if the axial stiffness is not known
+    return not strain[0] > LARGE_STRAIN  # True if the strain is nan: the axial stiffness is not known
 
 
 def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:

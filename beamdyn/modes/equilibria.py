@@ -200,7 +200,7 @@ def equilibrium(
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
-    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable one on the opposite side'
+    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable one, on the opposite side'
     said = "the equilibrium is unstable ", at, f": a small motion grows at {growth:.3g} 1/s; {remedy}"
     rate = {"quantity": "growth rate [1/s]", "value": growth, "limit": 0.0}
     unstable = Statement(*said, kind=GROWING, remedy=remedy, **rate)

@@ -11,7 +11,7 @@ that is rotated by the twist beta(x).  On cells the curvatures *in the axes of t
 so that the energy and the moments D p contain no cosine of the twist.  Only curvatures along the fixed
 directions e1, e2, and moments in the axes of the section, contain it.  Polynomials replace its cosine and
 sine; they are exact for a beam whose stiffness is within (1 -+ `misfit`) D(x): see `twist_degree`.  An array
-(n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
+(n, 2, N) has components along e1, e2 or, where its docstring says so, in the axes of the section.
 
 In shapes of arrays, n counts functions, N Gauss points or nodes, c cells, m moments, and k point masses.
 """
@@ -228,7 +228,10 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Bending moments at the Gauss points by each function's loads, as in `forms`: (4, n, points)."""
+        """Bending moments at the Gauss points by each function's loads, in the order of `forms`.
+
+        The shape is (4, functions, points).
+        """
         tension_b, tension_a, mass = self.loads
         slope, (xi, lumped) = self.slope[:, :-1], self.beam.lumps
         inertia = self.from_tip(self.from_tip(mass * self.deflection[:, :-1]))
@@ -406,7 +409,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def twisting_size(self) -> float:
-        """Norm of all slopes times the norm of all curvatures, to which rounding errors are relative."""
+        """Norm of all slopes times norm of all curvatures: the scale of the rounding errors of `twisting`."""
         sizes = (np.sqrt(np.trace(self.gram(u, np.ones(1)))) for u in (self.slope[..., :-1], self.bending))
         return float(math.prod(sizes))
 

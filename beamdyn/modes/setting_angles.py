@@ -184,7 +184,7 @@ def setting_angle_limits(
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Compute both setting angles [rad] from the matrix A - cos(setting angle) B of the squared speed.
+    """Compute both setting angles [rad] from the stiffness A - cos(setting angle) B per squared speed.
 
     B is the radius of the root times the stiffness due to the tension by a unit root acceleration.
     """

@@ -81,7 +81,8 @@ class Harvester(FieldsOnly):
     strain_limit : float
         Largest strain that a layer bears; inf where none is known.
     poissons_ratio : float, optional
-        -s12E/s11E, for camber, which a clamp hinders: that increases stiffness and coupling near it.
+        Poisson's ratio of the layers, -s12E/s11E; needed to model camber.  A clamp hinders camber, which
+        increases stiffness and coupling near the clamp.
 
     Raises
     ------
@@ -163,7 +164,7 @@ class Harvester(FieldsOnly):
 
     @property
     def material(self) -> Material:
-        """Stiffness, coupling, permittivity of the layers: strain along the beam, field through the layer."""
+        """Constants of the layers' material for strain along the beam and a field through the thickness."""
         if self.e31 is not None and self.c11e is not None and self.eps33s is not None:
             return Material(self.c11e, self.e31, self.eps33s)
         assert self.d31 is not None and self.s11e is not None and self.eps33t is not None, "one set is given"
@@ -266,7 +267,7 @@ class Electrodes(FieldsOnly):
     bare : Beam
         The beam without layers and electrodes.
     span : tuple of float
-        Begin and end of the electrodes, as x/L.
+        Start and end of the electrodes, as x/L.
     coupling : float
         Coupling theta: bending moment per voltage [N m/V].
     capacitance_per_length : float

@@ -53,7 +53,7 @@ _SIDE_POWERS = {
 
 @cache
 def units() -> dict[str, str]:
-    """Return the SI units of all numbers of scenes, by path; paths of list members have "[]", no index."""
+    """Return the SI units of all numbers of scenes, by path, with "[]" for the index of a list member."""
     of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
@@ -195,7 +195,7 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
     ------
     InvalidValue
         If a value is out of its range, or the scene has no such number: no such member of a list, another
-        motion, or a beam of no rectangular section where a side or the material of one is given.
+        motion, or no rectangular section although a side or the material of a section is given.
     """
     of_beam = {path.removeprefix("beam."): float(v) for path, v in values.items() if path.startswith("beam.")}
     of_layers = {

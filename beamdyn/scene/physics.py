@@ -294,7 +294,7 @@ class OfChosenPhysics(Result):
 # Physics that tip loads and springs require ------------------------------------------------------------
 
 ROOT_SPRINGS = "root_stiffness", "second_root_stiffness"
-_ALONG = 1e-12  # part of the load out of the plane of bending that counts as rounding error
+_ALONG = 1e-12  # fraction of the load out of the plane of bending that counts as rounding error
 # Largest spring stiffness at the root, divided by EI/L: rounding hides the rotation of a stiffer one.
 _STIFFEST = 1e16
 # Largest spring stiffness along the beam, divided by EI/L^3: above, rounding hides the spring's deflection.

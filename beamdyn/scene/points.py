@@ -124,8 +124,8 @@ class PointMass:
     Parameters
     ----------
     position : float
-        Distance from the root along the beam [m], above 0 and at most the length: one at the tip is a
-        `TipMass` without offset and inertia.
+        Distance from the root along the beam [m], above 0 and at most the length: a mass at the tip counts
+        as a `TipMass` without offset and inertia.
     mass : float
         Mass [kg].
 

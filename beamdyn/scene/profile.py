@@ -180,7 +180,7 @@ class Profile(FieldsOnly):
 
 
 def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
-    """Build the piecewise polynomial of Legendre coefficients that are given in a column for each segment."""
+    """Build a piecewise polynomial from Legendre coefficients, one column for each segment."""
     profile = Profile(ends, tuple(map(tuple, series.T.tolist())))
     profile.__dict__["series"] = series  # stores the known series as the cached property
     return profile

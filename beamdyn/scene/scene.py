@@ -439,7 +439,7 @@ def _with_constants(beam: Beam, physics: Physics) -> Beam:
 
 
 def _with_corners(beam: Beam, planes: int) -> Profile:
-    """Add breakpoints near the root to the mass per length, where stresses in a plate's corners vary."""
+    """Return the mass per length with breakpoints that resolve stresses in a plate's corners at the root."""
     assert beam.strip is not None
     part = float(beam.strip.width(np.zeros(1))[0]) / beam.length
     places = tuple(part * each for each in _CORNERS)
@@ -468,7 +468,7 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
 
 @dataclass(frozen=True, kw_only=True)
 class SceneResult(Result):
-    """Base of results of one scene; their own fields come first.
+    """Base class of results for one scene; fields of subclasses come before the fields listed here.
 
     Attributes
     ----------

@@ -238,5 +238,8 @@ def strangeness(matrices: np.ndarray) -> np.ndarray:
 
 
 def polar_excess(matrices: np.ndarray) -> np.ndarray:
-    """Compute the relative difference of each mass matrix's M44 from M55 + M66, its value if flat."""
+    """Compute the relative difference of M44 of each mass matrix from M55 + M66.
+
+    Both are equal if all mass of the section lies in one plane across the beam.
+    """
     return np.abs(1 - (matrices[4, 4] + matrices[5, 5]) / matrices[3, 3])

@@ -1,7 +1,7 @@
 """Continuation of the equilibria of a beam over a parameter, through turning points.
 
 A curve of solutions of r(q, p) = 0 is computed in steps of its arc length, measured by the beam's slope
-angles and by the parameter over its scale (Keller's pseudo-arclength method).
+angles and by the parameter divided by its scale (Keller's pseudo-arclength method).
 
 In shapes of arrays, n counts coordinates, and k positions along the beam or points of the curve.
 """
@@ -127,7 +127,7 @@ class Point:
     q_rate : ndarray, shape (n,)
         Change of the coordinates per arc length.
     p_rate : float
-        Change of the parameter, over its scale, per arc length.
+        Change of the parameter, divided by its scale, per arc length.
     """
 
     q: np.ndarray
@@ -341,7 +341,7 @@ def _bordered(load: Loading, q: np.ndarray, p: float, point: Point) -> np.ndarra
 
 
 def _metric(load: Loading, q: np.ndarray, p: float) -> float:
-    """Compute the arc length of a change: root mean square of angles, and the scaled parameter."""
+    """Compute the arc length of a change from the root mean square of the angles and the scaled parameter."""
     return float(np.sqrt(np.mean((q @ load.angles) ** 2) + p**2))
 
 

@@ -37,7 +37,7 @@ _MOST_IN_ALL = 1000
 # Largest number of segments with which polynomials on each segment need fewer functions than bending moments
 # that are polynomials along the whole beam.
 _FEW_SEGMENTS = 6
-_MANY_ON_EACH = 2  # number of modes per segment above which polynomials need fewer functions
+_MANY_ON_EACH = 2  # modes per segment above which polynomials on segments need fewer functions than moments
 # Number of functions of the basis "moments" in each direction, minus the number of modes: a constant, the
 # number added per digit of accuracy (both found on published blades), and the smallest sum of the two.  With
 # fewer functions, the stated error of a mode may be too small.  Twisted sections need fewer, because a moment
@@ -347,7 +347,7 @@ def check_discretization(discretization: object) -> None:
 # Length of a boundary layer in decay lengths: this number, minus half the logarithm of the allowed relative
 # error of an eigenvalue.
 _LENGTHS = 5.0
-# Longest boundary layers, over the length, that get separate functions.
+# Longest boundary layers at the root and at the tip, divided by the length, that get separate functions.
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4
 _SHORTEST = 1e-4  # length of the shortest boundary layer, over the length of the beam
 # Breakpoints x/L added near the tip to resolve a boundary layer when the speed, on which its length depends,

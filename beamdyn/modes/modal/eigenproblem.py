@@ -164,7 +164,7 @@ class Solver(Eigensolver):
 
     @cached_property
     def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coordinates with diagonal stiffness: its growth with squared speed, their basis and mass matrix."""
+        """Growth of a diagonal stiffness per squared speed; basis and mass matrix of its coordinates."""
         L = self._at_rest
         K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
         growth, Q = np.linalg.eigh(K2)

@@ -24,8 +24,8 @@ Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles [rad] below which two equilibria count as the same
 # Largest difference of slope angles [rad] between an equilibrium and that of a coarser discretization.
 _NEAR = 0.01
-_PUSH = 0.05  # transverse acceleration, over speed^2 length, that pushes the beam to the other branch
-_FASTEST = 100.0  # highest speed at which equilibria are computed, over the first angular frequency at rest
+_PUSH = 0.05  # transverse acceleration, divided by speed^2 length, that pushes the beam to the other branch
+_FASTEST = 100.0  # highest speed of equilibria, divided by the first angular frequency at rest
 # Ratio of speed to first angular frequency at rest up to which a loss of stability is searched: at higher
 # speeds, boundary layers require short steps.
 _SOUGHT = 30.0
@@ -128,7 +128,7 @@ def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
     """
     if load.elastica.load is not None:
         said = "with a load at the tip, no other branch is searched; "
-        raise NoEquilibrium(f"{said}a small transverse force leads to one, if there is one")
+        raise NoEquilibrium(f"{said}a small transverse force leads to it, if it exists")
     transverse, squared = load.growing.get("root_transverse", 0.0), speed**2
     natural = transverse or natural
     push = -2 * natural - math.copysign(_PUSH * load.elastica.beam.stations.length, natural + 0.0)

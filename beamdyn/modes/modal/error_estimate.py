@@ -67,7 +67,7 @@ class EstimatedModes:
         Modes of `model`.
     error : ndarray, shape (speeds, modes)
         Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved,
-        where the coarser model has no such mode, and where the model does not exceed the coarser one.
+        where the coarser model has no such mode, and where it has no fewer functions than the model.
     """
 
     model: Model
@@ -81,7 +81,7 @@ class EstimatedModes:
 
 
 def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> EstimatedModes:
-    """Solve a model, and estimate the errors of its eigenvalues by the coarser model.
+    """Solve a model, and estimate the errors of its eigenvalues by comparison with the coarser model.
 
     Parameters
     ----------
@@ -134,8 +134,8 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         rounding = ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
         error = truncation + rounding
         resolved = (half / size < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
-    # A root without a spring may turn freely at rest, or if it lies on the axis: a frequency within rounding
-    # of 0 is then taken as 0.
+    # A root without a spring may turn freely: at rest or, if it lies on the axis of rotation, at any speed.
+    # A frequency within rounding of 0 is then taken as 0.
     if not s.all():
         free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
         neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
@@ -150,7 +150,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 def _mesh_error(
     model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray, before: np.ndarray
 ) -> np.ndarray:
-    """Estimate the relative truncation error of extrapolated squares by differences between meshes."""
+    """Estimate relative truncation errors of extrapolated squared eigenvalues, by comparison of meshes."""
     compared = squared.shape[1]
     noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
     K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
@@ -160,8 +160,8 @@ def _mesh_error(
     left = extrapolation_error(distance, before, noise, least)
     truncation = (left + noise) / (2 * np.abs(squared))
     # Elements usually resolve lower modes better, so no mode is given a smaller error than a lower mode.  A
-    # square below the lowest at rest has a large relative error only by its small size; its error counts
-    # relative to the lowest.
+    # squared frequency below the lowest one at rest has a large relative error only because it is small: its
+    # error counts relative to the lowest one at rest.
     size = np.abs(squared) / model.solver.lowest_at_rest
     known = (size > 0) & np.isfinite(truncation)
     of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
@@ -183,7 +183,8 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 
 def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Estimate the relative truncation error of a model by `_ritz_error`, with the model's parameters."""
-    # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
+    # The Rayleigh quotient of the first mode, with the matrices at rest, is an upper bound of the lowest
+    # squared frequency at rest.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     bound = (stiffness / mass).min() + model.equations.shift
     # The error of a squared frequency below the lowest one at rest is relative to the latter.  The lowest one
@@ -216,7 +217,7 @@ def extrapolation_error(
     noise : ndarray, shape (..., modes)
         Rounding error of the differences.
     least : float
-        Smallest ratio of the two that is used; it is larger if segments converge at different rates.
+        Smallest ratio of the two differences that is used; larger if segments converge at different rates.
 
     Returns
     -------

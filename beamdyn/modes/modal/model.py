@@ -263,7 +263,7 @@ def bends(model: Model) -> bool:
 
 FEWEST_MODES = 2  # number of modes of the first basis, unless a number is given
 SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are searched
-_MOST_MODES = 60  # largest number of modes: with more, the fastest modes need too small steps
+_MOST_MODES = 60  # largest number of modes: with more, the highest ones need too small time steps
 # Ratio of a pivot of the mass matrix to the largest pivot, below which it is 0 within rounding.
 _MASSLESS = 1e-14
 _DEPENDENT = 1e-10  # relative singular value below which mode shapes are linearly dependent

@@ -180,7 +180,7 @@ def can_add(scene: Scene, effect: effects.Effect) -> bool:
 
 _MOST = 160  # largest number of coordinates of a model that suffices to estimate a change
 _APART = 1e-8  # relative distance kept from an eigenvalue, where the equations are singular
-_AT_CLAMP = 3  # number of functions along each segment, beyond that of modes, to resolve camber near a clamp
+_AT_CLAMP = 3  # functions along each segment in addition to the modes, to resolve camber near a clamp
 # Number of functions across the width.  With these, the error is 1 % of the part of the change by camber that
 # is due to the clamp, and 0.1 % for torsion.
 _ACROSS = 4

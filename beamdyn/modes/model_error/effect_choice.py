@@ -385,9 +385,9 @@ def choose_by(
 
 
 def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
-    """Add effects, except those in `barred`, until the other addable ones are small in sum.
+    """Add effects, except those in `barred`, until those that could still be added are small.
 
-    Their sizes then sum to at most half the tolerance, or each is below a tenth of it.
+    Their sizes then sum to at most half the tolerance, or each is below a tenth of the tolerance.
     """
 
     def sizes(found: _Candidate) -> dict[str, float]:

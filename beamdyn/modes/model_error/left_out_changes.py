@@ -46,7 +46,8 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedM
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
-# Reasons why large deflection cannot be added, by the name of the field in the error raised.
+# Reasons why the change by large deflection is not known; those in `_REFUSED` are listed by the name of the
+# field in the error that is raised if large deflection is added.
 _TWO_PLANES = "not estimated for two planes, where modes may cross"
 _OF_BENDING = "computed only for bending modes"
 _HINGED = "a beam on a hinge has no unique equilibrium from which it could bend"
@@ -307,7 +308,7 @@ def _gather(
 
 
 class SolvedValues(NamedTuple):
-    """Values of a result, nan where there is none, with the reason for that, and the assumptions made."""
+    """Values of a result, nan where they are not known, with the reason why, and the assumptions made."""
 
     values: np.ndarray
     reason: str = ""
@@ -374,7 +375,7 @@ def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedVal
         return SolvedValues(unknown, _TWO_PLANES)
     try:
         straight, bent = _comparable(scene)
-        # An analysis may support large deflection in one plane only.
+        # This raises an error if the analysis supports large deflection in one plane only.
         within = solve(bent, LARGE_DEFLECTION.name)
     except InvalidValue as error:
         return SolvedValues(unknown, _REFUSED.get(error.field, str(error)))

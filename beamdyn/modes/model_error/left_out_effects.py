@@ -21,7 +21,8 @@ from beamdyn.scene.validity import list_speeds
 LARGE_MODEL_ERROR = 0.01  # relative change by neglected effects above which a warning is given
 _NEGLIGIBLE = 1e-9  # relative change below which the change may be a rounding error
 _LARGE = 1000.0  # frequency [Hz] above which frequencies are printed as whole numbers
-# Relative changes above which a factor is printed, and then in scientific notation.
+# Relative changes above which a change is printed as a factor, and above which this is in scientific
+# notation.
 _MANY_TIMES, _COUNTLESS = 10.0, 1e4
 
 
