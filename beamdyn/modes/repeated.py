@@ -70,7 +70,7 @@ class JudgedByRepeating(StatesModelError):
         if self.again is None or not np.isfinite(self.judged(self)).any():
             return nothing_known(self.scene, _LOADED if self.again is None else _NOTHING)
         found, name = left_out_by_solving(self.scene, self.solve), LARGE_DEFLECTION.name
-        if reason := found.not_known.get(name):  # solving gave no change by large deflection: estimate it
+        if reason := found.not_known.get(name):  # not computed by solving: estimate it
             found = _with_change(found, name, self.judged(self), self.bent_values(self.judged(self), reason))
         return replace(found, counted=self.counted or found.counted)
 

@@ -159,7 +159,7 @@ class Harvester(FieldsOnly):
             raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check the constants", "F/m", limit)
         nu = self.poissons_ratio
         if nu is not None and material.held_across(nu).permittivity <= 0:
-            bound = "without strain along and across, a layer's permittivity would not be positive"
+            bound = "without strain in its plane permittivity would be 0 or less: no material couples so much"
             raise InvalidValue("harvester.poissons_ratio", nu, bound, "check the constants")
 
     @property

@@ -201,7 +201,7 @@ def _bent_change_at(
     order = assign(np.abs(eigenvalue[:, None] - without[None, :]))
     try:
         within = bent.solver.solve(speeds, count).eigenvalue[0]
-    except (ArithmeticError, np.linalg.LinAlgError) as error:  # such as for a hinged beam at any angle
+    except (ArithmeticError, np.linalg.LinAlgError) as error:  # a hinged beam has no unique equilibrium
         unknown = np.full(len(eigenvalue), np.nan)
         return unknown, _NOT_FOUND if isinstance(error, np.linalg.LinAlgError) else reason_of(error)
     with np.errstate(divide="ignore", invalid="ignore"):
