@@ -53,15 +53,15 @@ from beamdyn.scene.scene import Scene
 _TURN = 2 * np.pi
 _EPSILON = 2.0**-48  # relative rounding error of each term of a mean square
 _FIRST_MODES = 4  # number of modes of a first, coarse model, used only for the magnitudes of the outputs
-# Ratio of the tolerance of time derivatives to that of other statistics: peak factors depend only on the
-# logarithm of time derivatives.
+# Tolerance of the rms of time derivatives, divided by the tolerance of the other statistics.  It may be
+# loose, since only the logarithm of time derivatives enters the results, in peak factors.
 _OF_RATES = 1e3
 _LEAST = math.e  # smallest number of crossings for which the peak factor is evaluated
 
 
 @dataclass(frozen=True)
 class LoadFractions:
-    """Transfer functions H(s) = d + sum r_k / (s - p_k) of outputs at stations, at one harmonic.
+    """Transfer functions H(s) = d + sum r_k / (s - p_k) of outputs at stations, at one harmonic of rotation.
 
     Parameters
     ----------
@@ -167,7 +167,8 @@ class LinearLoads:
     def _direct(self, drive: HarmonicDrive) -> np.ndarray:
         """Compute the direct terms d of the outputs at stations, which follow the input without delay.
 
-        They are due to the acceleration of the root, the force itself, and the accelerations it causes.
+        An acceleration of the root acts through the inertia of the beam.  A force acts directly, and through
+        the inertia of the beam that it accelerates.
         """
         rows, by_force = self._rows
         total = _sum(drive.accelerations, rows.load, np.zeros(rows.shape))
@@ -209,7 +210,7 @@ class LinearLoads:
 
     @cached_property
     def _rows(self) -> tuple[LoadRows, np.ndarray]:
-        """Outputs as linear functions of coordinates and velocities, and outputs per unit force on each.
+        """Outputs as linear functions of coordinates and velocities, and outputs per unit generalized force.
 
         The equations of motion were used to eliminate the accelerations.
         """
@@ -221,7 +222,7 @@ class LinearLoads:
 
     @cached_property
     def _at_speed(self) -> tuple[np.ndarray, np.ndarray]:
-        """Outputs at each station per unit of each coordinate, and per velocity, in steady rotation."""
+        """Outputs at each station in steady rotation: per unit of each coordinate, and of each velocity."""
         rows, _ = self._rows
         zero = np.zeros((*rows.shape, self.model.equations.size))
         position, velocity = (_sum(self._values(row), row, zero) for row in (rows.position, rows.velocity))
@@ -259,13 +260,13 @@ class RandomStatistics:
     Parameters
     ----------
     mean : ndarray, shape (S, K)
-        Constant part, by the steady rotation [unit of the output].
+        Constant part, due to the steady rotation [unit of the output].
     gravity : ndarray, shape (S, K)
-        Amplitude of the variation by gravity within a turn [same unit].
+        Amplitude of the variation due to gravity during a turn [same unit].
     rms : ndarray, shape (S, K)
-        Root mean square of the random part, over time and over a turn [same unit].
+        Root mean square of the random part, averaged over time and over the angle of rotation [same unit].
     rms_in_turn : ndarray, shape (S, K)
-        Root mean square at the angle of rotation at which it is largest [same unit].
+        Root mean square of the random part at the angle of rotation at which it is largest [same unit].
     rate_rms : ndarray, shape (S, K)
         Root mean square of the time derivative of the random part [same unit / s].
 

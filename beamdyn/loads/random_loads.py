@@ -51,9 +51,10 @@ _SEVERAL = 3.0  # number of standard deviations that a deflection rarely exceeds
 class RandomLoads(SpanLoads):
     """Loads along the span under a random input at one speed: largest magnitudes expected in a duration.
 
-    The fields are those of `SpanLoads`, with the speed as the only case.  Largest magnitudes are sums of the
-    constant part, the amplitude by gravity, and the root mean square of the random part, at the angle of
-    rotation at which that is largest, times a peak factor: estimates for a Gaussian input.
+    The fields are those of `SpanLoads`, with the speed as the only case.  Largest magnitudes are sums of
+    three terms: the constant part, the amplitude due to gravity, and a peak factor times the root mean square
+    of the random part, at the angle of rotation at which that is largest.  They are estimates for a Gaussian
+    input.
 
     Parameters
     ----------
@@ -220,13 +221,13 @@ def random_loads(
     input : BaseMotion, PointForce or str, optional
         As for `random_response`.
     duration : float
-        Duration for which the largest values are expected [s]; by default an hour.
+        Duration [s] whose expected largest values are computed; by default an hour.
     at, points, youngs_modulus
         As for `static_loads`.
     modes
         As for `random_response`.
     tolerance : float
-        Target of the error for "auto", relative to each component's largest value along the span.
+        Allowed error if `modes` is "auto", relative to each component's largest value along the span.
     discretization
         As for `random_response`.
 
@@ -259,7 +260,7 @@ def random_loads(
     )
     drive, spectrum = random_input(scene, speed, psd, input)
     check_damped(scene)
-    if not isinstance(spectrum, PowerSpectrum):  # loads by white noise are infinite
+    if not isinstance(spectrum, PowerSpectrum):  # white noise, for which mean squares of loads are infinite
         bound = "mean squares of loads by white noise are not finite"
         raise InvalidValue("psd", psd, bound, "give a PowerSpectrum, which ends at some frequency")
     asked = AskedLoads.of(scene, at, points, youngs_modulus)
@@ -308,7 +309,7 @@ def _warn_of_few(found: RandomStatistics, duration: float) -> Iterator[str]:
     """Yield a warning if the duration is too short for statistics of the largest value."""
     crossings = found.crossings[found.rms > 0]
     if len(crossings) and duration * crossings.min() < _FEW:
-        yield f"duration = {duration:g} s has few vibrations: largest values are rough; give a longer one"
+        yield f"duration = {duration:g} s has under {_FEW:g} vibrations: maxima are rough; give a longer one"
 
 
 def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpeed) -> Iterator[str]:
@@ -317,5 +318,5 @@ def _warn_of_few_modes(moment: np.ndarray, error: np.ndarray, model: ModelAtSpee
         share = percent(float(error.max() / moment.max()))
         yield (
             f"with {counted(model.modes, 'mode')} the estimated error of the bending moment is {share} of "
-            'the largest; give more modes, or "auto"'
+            'the largest moment; give more modes, or "auto"'
         )

@@ -43,7 +43,10 @@ _JUDGED = "strain", "moment", "force"
 
 
 class LoadCase(NamedTuple):
-    """What the first axis of load arrays counts (times or speeds): name, unit, and field of the values."""
+    """Name and unit of what the first axis of load arrays counts (times or speeds).
+
+    `field` is the name of the attribute of the result that contains these times or speeds.
+    """
 
     name: str
     unit: str
@@ -95,10 +98,11 @@ class LargestLoad:
 class SpanLoads(SceneResult, JudgedByRepeating):
     """Forces, moments, curvatures, strains and stresses at stations along the span.
 
-    C is the number of times or speeds, S the number of stations, d of modelled planes of bending (1 or 2), P
-    of points of the section.  Loads are the forces and moments that the part of the beam outboard of a
-    station exerts on the part inboard; moments are about the deflected axis.  Loads are computed from the
-    external forces and the inertia outboard, not from a curvature.
+    In shapes of arrays, `cases` is the number of times or speeds, S the number of stations, d the number of
+    modelled planes of bending (1 or 2), and `points` the number of points of the section.  Loads are the
+    forces and moments that the part of the beam outboard of a station exerts on the part inboard; moments are
+    about the deflected axis.  Loads are computed from the external forces and the inertia outboard, not from
+    a curvature.
 
     `left_out` contains the estimated relative change of the `judged_quantity`'s largest value by each
     neglected physical effect, `model_error` the magnitude of the sum of these changes; both are computed at
@@ -157,7 +161,10 @@ class SpanLoads(SceneResult, JudgedByRepeating):
     case: ClassVar[LoadCase]
 
     def headline(self) -> Iterator[str]:
-        """Yield largest moment and strain of all cases and stations for one line; see `Result.headline`."""
+        """Yield the largest moment and strain of all cases and stations, for a one-line summary.
+
+        See `Result.headline`.
+        """
         yield f"{counted(len(self.cases), self.case.name)}, {counted(len(self.x), 'station')}"
         for name in ("moment", "strain"):
             size = np.abs(self.values(name))
@@ -168,7 +175,7 @@ class SpanLoads(SceneResult, JudgedByRepeating):
 
     @property
     def judged_quantity(self) -> str:
-        """Quantity whose model error is stated: strain, or if 0 or unknown the moment, or else the force."""
+        """Quantity whose model error is stated: strain or, where that is 0 or unknown, moment or force."""
         sizes = {name: np.nan_to_num(np.abs(self.values(name))).max(initial=0.0) for name in _JUDGED}
         return next((name for name, size in sizes.items() if size), _JUDGED[-1])
 
@@ -189,7 +196,7 @@ class SpanLoads(SceneResult, JudgedByRepeating):
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments that limit a repeated analysis to the station of the largest value, both its sides."""
+        """Arguments that limit a repeated analysis to both sides of the station of the largest value."""
         return {"at": [self.largest(self.judged_quantity).x] * 2}
 
     @property
@@ -199,7 +206,7 @@ class SpanLoads(SceneResult, JudgedByRepeating):
 
     @property
     def cases(self) -> np.ndarray:
-        """Times [s] or speeds [rad/s] of the first axis."""
+        """Times [s] or speeds [rad/s] that the first axis of the load arrays counts."""
         return np.atleast_1d(getattr(self, self.case.field))
 
     def values(self, quantity: str) -> np.ndarray:
@@ -334,7 +341,10 @@ class AskedLoads:
     def result(
         self, values: np.ndarray, errors: np.ndarray, warnings: Iterable[str], method: str, compared_with: str
     ) -> dict[str, Any]:
-        """Build the fields of a `SpanLoads` from values and errors of the outputs at stations (last axes)."""
+        """Build the fields of a `SpanLoads` from the outputs at stations and their errors.
+
+        The last axes of `values` and `errors` count stations and outputs.
+        """
         by_quantity = self.outputs.split(values)
         return {
             "x": self.stations.xi * self.scene.beam.length,

@@ -132,7 +132,10 @@ class StationOutputs:
 
 
 class Sections(NamedTuple):
-    """Outputs at stations; points of the sections, (stations, points, 2) [m]; notes on neglected strain."""
+    """Sections at S stations: their outputs, and P points in each section at which strain is computed.
+
+    `points` has the shape (S, P, 2) [m]; `notes` name contributions that the strain does not include.
+    """
 
     outputs: StationOutputs
     points: np.ndarray
@@ -197,7 +200,8 @@ def sections_at(
     axial = np.zeros((len(xi), 1, loads))
     if beam.axial_stiffness is not None:
         axial[:, 0, 0] = 1 / beam.axial_stiffness(xi)
-    # The stress is in equilibrium with the moment, even where the clamp hinders the strain across the width.
+    # The clamp hinders the strain across the width and so stiffens the section.  This reduces the curvature
+    # and the strain, but not the stress: the stress follows from the curvature without the clamp's effect.
     strain, strain_by_stress = (
         axial - np.einsum("spi,sik->spk", at_stations[..., :planes], each) for each in (curvature, of_free)
     )
@@ -218,15 +222,15 @@ def _checked_points(points: object, half: np.ndarray) -> np.ndarray:
     """Check that P points (P, 2) are inside every section whose edges are known."""
     array = as_floats(points)
     if array is None or array.ndim != 2 or array.shape[1] != 2 or not 1 <= len(array) <= _MOST_POINTS:
-        many = f"give 1 to {_MOST_POINTS} pairs"
-        bound = f"{many} of distances from the neutral axes, along the section's two directions"
+        pairs = f"1 to {_MOST_POINTS} pairs"
+        bound = f"give {pairs} of distances from the neutral axes, along the section's two directions"
         raise InvalidValue("points", points, bound, "such as [(-0.001, 0.0), (0.001, 0.0)]", "m")
     if not np.isfinite(array).all():
         raise InvalidValue("points", points, "give finite numbers", unit="m")
     for side, name in enumerate(("first", "second")):
         limit = half[:, side].min()  # nan: the section's edge is not known
         bad = np.abs(array[:, side]) > limit * (1 + _ROUNDING)
-        bound = f"it lies outside the section: in the {name} direction the smallest one reaches {{limit}}"
+        bound = f"it lies outside the section: the smallest section reaches {{limit}} in the {name} direction"
         remedy = "leave {field} out, for the outermost points"
         refuse(bad, "points", array[:, side], "m", bound, remedy, limit=limit)
     return array
@@ -265,7 +269,7 @@ def _with_camber(curvature: np.ndarray, section: Rectangle, length: float, xi: n
 
 
 def with_neighbours(stations: SpanStations) -> SpanStations:
-    """Append evenly spaced stations, at which the loads of two models are compared as well."""
+    """Append evenly spaced stations to the given ones: two models are compared at all of them."""
     more = np.linspace(0, 1, _BETWEEN)
     return SpanStations(np.append(stations.xi, more), np.append(stations.inboard, more == 1))
 
@@ -278,7 +282,7 @@ def mode_error(
     basis: ModalBasis,
     length: float,
 ) -> np.ndarray:
-    """Estimate the errors of outputs from distances of loads between models, including rounding.
+    """Estimate the errors of outputs, including rounding, from the differences of loads between two models.
 
     At the nodes of the modes that a larger model adds, the distance is small by chance, although other modes
     left out contribute.  So the error at a station follows from the largest distance within half
@@ -323,7 +327,10 @@ def mode_error(
 
 
 def through(outputs: StationOutputs, errors: np.ndarray) -> np.ndarray:
-    """Convert errors of 1 + 2 d loads at S stations to errors of K outputs, (..., S, K); errors add up."""
+    """Convert errors of 1 + 2 d loads at S stations to errors of K outputs: shape (..., S, K).
+
+    The errors of the loads add up by magnitude in each output.
+    """
     weights = np.abs(outputs.matrix)
     with np.errstate(invalid="ignore"):  # an infinite error times 0 counts as 0
         return np.where(weights != 0, weights * errors[..., None, :], 0.0).sum(axis=-1)

@@ -51,7 +51,7 @@ class SteadyLoads(span_loads.SpanLoads):
     speeds : ndarray, shape (C,)
         Speeds [rad/s].
     harmonics : ndarray of int, shape (l, 2)
-        Multiples j of the rotation and k of the road of each line.
+        Each line's multiples j of the phase of rotation and k of the phase of the road.
     lines : tuple of Line, length l
         Spectral lines of the loads, named by their excitation; the static line is the mean.
 
@@ -248,7 +248,8 @@ def lines_of_response(
     rates = speeds[:, None] * np.array([1.0, motion.road_multiple or 0.0])
     used = dict.fromkeys([*rows.load, *rows.position, *rows.velocity])
     spectra = periodic_system.expand_quantities(equations, used, motion, speeds)
-    reached = set(pairs) | {(0, 0)}  # harmonics of coordinates and root motion, then of their products
+    # Harmonics in the loads: those of the coordinates, of the root's motion, and of products of both.
+    reached = set(pairs) | {(0, 0)}
     for quantity in rows.load:
         reached |= periodic_system.list_harmonics(spectra[quantity])
     for quantity in (*rows.position, *rows.velocity):
@@ -301,7 +302,7 @@ def _expand(
     """Compute complex amplitudes (C, S, K, U) of K outputs at C speeds and S stations, at U harmonics.
 
     `union` lists the U harmonics, `pairs` those of the coordinates' amplitudes `q`, `spectra` has the
-    amplitudes of the root's motion, and `rates` the rates of both phases [rad/s].
+    amplitudes of the root's motion, and `rates` the rates of the phases of rotation and road [rad/s].
     """
     everywhere = np.zeros((len(rates), len(union), q.shape[-1]), dtype=complex)
     everywhere[:, [union.index(h) for h in pairs]] = q

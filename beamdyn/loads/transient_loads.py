@@ -106,16 +106,22 @@ class TransientLoads(span_loads.SpanLoads):
 
     @cached_property
     def left_out_effects(self) -> LeftOutEffects:
-        """Relative changes of the largest value by neglected effects; unknown for given initial states."""
+        """Relative changes of the largest value by neglected effects.
+
+        They are unknown if the run started from an initial state given as an array.
+        """
         from_rest = isinstance(self.run.request.initial, str)
         return super().left_out_effects if from_rest else nothing_known(self.scene)
 
     def solve(self, scene: Scene, name: str) -> SolvedValues:
-        """Find the largest value with an effect added: by `as_deflection`, or by simulation if it is None."""
+        """Find the largest value with an effect added to the model.
+
+        It is estimated by `as_deflection`; if this returns None, it is computed by another simulation.
+        """
         return self.as_deflection(self.judged(self), name) or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate load values with large deflection from its effect on the largest deflection."""
+        """Estimate load values with large deflection from the change that it causes in the tip deflection."""
         return self.as_deflection(straight, LARGE_DEFLECTION.name) or SolvedValues(straight, reason)
 
     @property

@@ -143,7 +143,7 @@ def backbone(
     solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]
     if not (s.imag > 0 and s.real <= 0):
-        bound = f"it does not vibrate about the equilibrium at {speeds[0]:g} rad/s"
+        bound = f"this mode does not oscillate about the equilibrium at {speeds[0]:g} rad/s"
         raise InvalidValue("mode", mode, bound, 'another speed or Physics(branch="bent")')
     found = FreeVibration.of(solution.model, float(speeds[0]), mode)
     k, coarse, coarsest = found.coefficient(SMALL / 2), *_coarser_coefficients(solution.model, speeds, mode)
@@ -178,14 +178,16 @@ def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[
 # Ratio of the tip amplitude to the length.  The frequency change is computed at half this amplitude, and the
 # error of the result from the difference to the change at the full amplitude.
 SMALL = 0.02
-# Ratio of the stated error of the coefficient to the difference between its values at two amplitudes, because
-# this difference may be due to rounding.
+# Safety factor: ratio of the stated error of the coefficient to the difference between its values at two
+# amplitudes, which may be due to rounding alone.
 _OF_AMPLITUDE = 2.0
-_STEADY = 1e-3  # relative difference of the coefficients of two bases below which these converge steadily
+# Relative difference of the coefficients of two bases below which their convergence counts as steady.
+_STEADY = 1e-3
 # Relative difference of coefficients that rounding may cause: rounding errors are divided by eps^2.
 _ROUNDED = 1e-7
 _SAMPLES = 16  # number of samples per period, which separate harmonics up to the seventh
-# Relative size of the dynamic stiffness, below which the second harmonic is resonant with another mode.
+# Relative size of the dynamic stiffness at twice the frequency, below which the second harmonic is resonant
+# with another mode.
 _RESONANT = 1e-3
 
 
@@ -220,7 +222,7 @@ class FreeVibration:
         return cls(state, speed, frequency, v * state.of.beam.stations.length / size)
 
     def coefficient(self, small: float) -> float:
-        """Compute the relative frequency change over the squared relative amplitude, as this goes to 0.
+        """Compute the relative frequency change divided by (amplitude / length)^2, for amplitudes towards 0.
 
         It is extrapolated from the relative amplitudes `small` and half of that.
         """
@@ -230,7 +232,7 @@ class FreeVibration:
     def warnings(self) -> list[str]:
         """List a warning if the second harmonic is close to a natural frequency, and so excites a mode."""
         values = np.abs(np.linalg.eigvals(np.linalg.solve(self._dynamic(0), self._dynamic(2))))
-        near = values.min() < _RESONANT * 3  # 3 = |1 - 2^2| is the value of the vibrating mode itself
+        near = values.min() < _RESONANT * 3  # the vibrating mode has the value |1 - 2^2| = 3
         return ["twice the frequency is near that of another mode: the modes exchange energy"] if near else []
 
     def _dynamic(self, harmonic: int) -> np.ndarray:

@@ -1,7 +1,7 @@
 """Guaranteed lower and upper bounds of natural frequencies of bending, and of critical speeds.
 
-`beamdyn.modes.residual_bound` proves the theorem; this module enlarges the Ritz basis until the bounds hardly
-get narrower.
+The bounds follow from a Ritz basis by the theorem proved in the docstring of `beamdyn.modes.residual_bound`.
+This module enlarges the basis until the bounds hardly get narrower.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class FrequencyBounds(SceneResult):
     width : ndarray, shape (m,)
         Relative width upper / lower - 1; nan where a bound is nan.
     how : str
-        Argument that guarantees the bounds.
+        How the bounds are guaranteed, in words.
     warnings : tuple of str
         Missing bounds and their reasons; also a deflection by rotation that is too large for the model.
     provenance : Provenance
@@ -169,7 +169,8 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
 def _lowest(of_planes: Sequence[np.ndarray], modes: int, missing: float) -> np.ndarray:
     """Merge the bounds of all planes, and return the lowest, ascending; nan where none is known.
 
-    A missing lower bound counts as -inf, or as the bound of the mode before; a missing upper bound as inf.
+    With several planes, an unknown bound (nan) counts as `missing`, which is -inf for lower bounds and inf
+    for upper ones.  A bound lower than that of the plane's previous mode is replaced by the latter.
     """
     if len(of_planes) == 1:
         return of_planes[0][:modes]
@@ -184,15 +185,18 @@ def _widen(values: np.ndarray, units: int) -> np.ndarray:
 
 
 def _frequency(squared: np.ndarray, units: int) -> np.ndarray:
-    """Convert squared angular frequencies to frequencies [Hz], changed by rounding units; nan if negative."""
+    """Convert squared angular frequencies to frequencies [Hz]; nan if negative.
+
+    The frequencies are then increased (units > 0) or decreased (units < 0) by a number of rounding units.
+    """
     return _widen(np.sqrt(np.where(squared > 0, squared, np.nan)) / (2 * np.pi), units)
 
 
 def _warnings(lower: np.ndarray, upper: np.ndarray) -> Iterator[Statement]:
-    why = ": the error of the remaining functions could not be bounded, even with the largest basis"
+    why = ": the error by functions outside the basis could not be bounded, even with the largest basis"
     missing = "no lower bound of ", why
     unstable = "", ": unstable, see the bounds of the squares"
-    undecided = "", ": stable or unstable, as the bounds of the squares enclose zero"
+    undecided = "", ": maybe unstable, because the bounds of the squared frequency enclose zero"
     for mask, kind, (begin, end) in (
         (np.isnan(lower), NO_ANSWER, missing),
         (upper <= 0, GROWING, unstable),
@@ -227,8 +231,8 @@ def _nondimensional(scene: Scene) -> tuple[Scene, float]:
 def bound_critical_speed(scene: Scene) -> float:
     """Compute a guaranteed lower bound of the critical speed of bending [rad/s]; 0 if none is proved.
 
-    The theorem in `beamdyn.modes.residual_bound`, with z = 0 and k = 1, proves that the stiffness is positive
-    definite at this speed and thus at every lower one.
+    The theorem in `beamdyn.modes.residual_bound`, for the lowest squared angular frequency (k = 1) and the
+    bound z = 0, proves that the stiffness is positive semidefinite at this speed and thus at every lower one.
     """
     scaled, time = _nondimensional(scene)
     if (flexibility := bound_flexibility(scaled.beam.bending_stiffness)) is None:

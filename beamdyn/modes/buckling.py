@@ -100,7 +100,8 @@ _ROUNDING = 64 * float(np.finfo(float).eps)
 _SHORTEST = 1e-12  # distance x/L of a point mass from the tip below which it counts as a tip mass
 # Numbers of functions, on all segments together, of two bases whose results must agree.
 _STRING_SIZES = 60, 100
-# Smallest distance of the string's eigenvalue from 1 that decides, over the difference of the two bases.
+# The string's eigenvalue decides only if its distance from 1 exceeds this number times the difference between
+# the eigenvalues of the two bases.
 _RESOLVED = 10
 _CELLS = 2000  # number of cells of the midpoint rule on all segments together
 _MARGIN = 1.01  # factor that allows for the error of the midpoint rule
@@ -111,17 +112,17 @@ _ALIGNED = 1e-14  # ratio of a product of inertia to the moments of inertia belo
 
 @dataclass(frozen=True)
 class Buckling:
-    """Decision whether a beam in bending has a critical speed, with the argument.
+    """Decision whether a beam in bending has a critical speed, with the theoretical reason.
 
     Parameters
     ----------
     exists : bool or None
         Whether there is a critical speed; None if this could not be decided.
     why : str
-        Argument that decides, as a sentence.
+        Theoretical reason of the decision, as a clause.
     speed : float or None
-        Critical speed [rad/s], if the argument gives it: 0 if the beam is unstable at every speed, inf if its
-        axial strain passes 1 % first; None if a search is needed.
+        Critical speed [rad/s], if it follows from the theory: 0 if the beam is unstable at every speed, inf
+        if its axial strain passes 1 % first; None if a search is needed.
     none_below : float
         If only the inertia of tilting sections can buckle the beam, a speed [rad/s] below which it does not;
         otherwise 0.
@@ -169,10 +170,11 @@ def decide_buckling(scene: Scene) -> Buckling:
 
 
 def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float) -> Buckling:
-    """Decide whether a slender beam in one plane has a critical speed; if need be, by a string (see module).
+    """Decide whether a slender beam in one plane has a critical speed, if need be by an equivalent string.
 
-    The parameters are a, the distance of the root from the rotation axis, against the beam's direction [m];
-    c^2 and s^2; and `tilt`, the part of T_22 by the moments of inertia J_e and J_1 [kg m2].
+    The parameters, with the symbols of the module's docstring, are a, the distance of the root from the axis
+    of rotation times cos(setting angle), positive for an inward beam [m]; c^2 and s^2; and `tilt`, the part
+    of T_22 by the moments of inertia J_e and J_1 [kg m2].
     """
     L, tip = beam.length, beam.tip or TipMass(0.0)
     m, eps, reach, (xi, lumped) = tip.mass, tip.offset, L + tip.offset - a, beam.lumps
@@ -189,11 +191,12 @@ def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float
     determinant = _sum(  # determinant of the matrix T in the module's docstring, times L / m
         *(tilt * v for v in (sin2 * L, eps, -a)), *(m * eps * reach * v for v in (sin2 * L, sin2 * eps, -a))
     )
-    # If T_22 = 0, T_12 is 0 too, and T_11 has the sign of the tension at the tip.
+    # Of the matrix T in the module's docstring: if T_22 = 0, T_12 is 0 here as well, and T_11 has the sign of
+    # the tension at the tip, which is not negative here.  So T >= 0 without a check of the determinant.
     pulled = a <= min(0.0, (1 - cos2) * L) and (toppling == 0 or determinant >= 0)
     if cos2 == 0 or pulled:
         return Buckling(False, "the rotation stiffens the beam against every deflection")
-    # Mass at the end of the string: c^2 m (1 + c^2 m eps^2 / T_22).
+    # Mass at the end of the string, c^2 m (1 + c^2 m eps^2 / T_22); symbols: see the module's docstring.
     end_mass = cos2 * m + (coupling**2 / toppling if coupling else 0.0)
     coarse, fine = (_lowest_of_string(beam, a, cos2, end_mass, size) for size in _STRING_SIZES)
     if fine < 1 - _ROUNDING * _STRING_SIZES[-1]:
@@ -204,7 +207,11 @@ def _decide_in_plane(beam: Beam, a: float, cos2: float, sin2: float, tilt: float
 
 
 def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: int) -> float:
-    """Compute an upper bound of the string's lowest ratio of tension work to centrifugal work, by Ritz."""
+    """Compute the lowest eigenvalue of the string with a mass at its end by Ritz's method, which is above it.
+
+    The eigenvalue is the ratio of the work of the tension to that of centrifugal forces; see the docstring of
+    this module.  `size` is the number of trial functions on all segments together.
+    """
     space = Ritz(max(2, size // (len(beam.breakpoints) - 1))).spaces(beam).functions(FIXED)
     n_a, n_b = axial_tension(beam)
     tension = space.gram(n_b, 1) - a * space.gram(n_a, 1)
@@ -215,21 +222,24 @@ def _lowest_of_string(beam: Beam, a: float, cos2: float, end_mass: float, size: 
 
 
 def _sum(*terms: float) -> float:
-    """Add numbers; 0 if the sum is within their rounding errors.
+    """Add numbers; return 0 if the sum is within their rounding errors.
 
-    If a smaller sum decides about a critical speed, that speed exceeds 1e6 sqrt(EI / (rho A L^4)).
+    A sum that is wrongly taken for 0 can hide only a critical speed above 1e6 sqrt(EI / (rho A L^4)).
     """
     total = math.fsum(terms)
     return total if abs(total) > _ROUNDING * math.fsum(map(abs, terms)) else 0.0
 
 
 def _inward(scene: Scene) -> float:
-    """Compute a, the distance of the root from the rotation axis, against the beam's direction [m]."""
+    """Compute a: hub radius times cos(setting angle) [m], positive if the beam points inward."""
     return scene.mount.radius * aligned_cos_sin(scene.mount.setting_angle)[0]
 
 
 def _least_turning(scene: Scene) -> float:
-    """Compute the minimum of the form F (see module) over unit rotations about a hinge [kg m2], or inf."""
+    """Compute the minimum of the form F over unit rotations about a hinge [kg m2]; inf without a free hinge.
+
+    F, which multiplies the squared speed in the stiffness, is defined in the docstring of this module.
+    """
     springs = scene.mount.root_stiffnesses[: scene.physics.planes]
     # Whether springs along the beam support the beam, in each direction.
     held = [scene.beam.springs(direction)[1].size > 0 for direction in range(len(springs))]
@@ -276,7 +286,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
     bending = _tensor(beam, "bending_stiffness", xi, planes)
     springs = np.array(mount.root_stiffnesses)[:planes]
     flexibility = 1 / np.linalg.eigvalsh(bending)[:, 0]  # 1 / smaller principal bending stiffness
-    # Hinges count as rigid here: see the conditions below.
+    # Hinges count as rigid here; the conditions below select the arguments that hold for a hinge.
     root = np.diag([1 / k if k else 0.0 for k in springs])
     by_bending = np.cumsum(np.linalg.inv(bending) * width[:, None, None], axis=0)
     C = components @ (root + by_bending) @ components.T
@@ -301,14 +311,15 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))
         ratios.append(ratio)
-    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0  # sound_speed: per length of the beam
+    # The speed of sound is divided by the length of the beam [1/s].
+    slowest, sound_speed = float((_MARGIN * min(ratios)) ** -0.5), 0.0
     if inertia := float(width @ rotary[:, 0, 0]):
         sound_speed = (inertia * float(width @ (1 / bending[:, 0, 0]))) ** -0.5
     speed = math.inf if slowest >= _LARGE_STRAIN**0.5 * sound_speed else None
     # Whatever the stiffness, sections or a tip body may topple in an infinitely short bend.
     free_end = tension[-1] < moments[-1] * (components[1] ** 2).sum()
     surely = not mount.precone and bool(shear or oblique or free_end)
-    why = "only the rotary inertia of tilting sections or a tip body can buckle it"
+    why = "only the rotary inertia of tilting sections or a tip body can buckle the beam"
     return Buckling(surely or None, f"the rotation stiffens the beam; {why}", speed, slowest)
 
 
@@ -335,6 +346,6 @@ def _tensor(beam: Beam, name: str, xi: np.ndarray, planes: int) -> np.ndarray:
     """Evaluate a section property in the directions of bending: shape (n, planes, planes)."""
     values = np.zeros((len(xi), planes, planes))
     for (i, j), profile in section_tensor(beam, name).items():
-        if max(i, j) < planes:  # torsion needs a second rotary inertia even in one plane
+        if max(i, j) < planes:  # in one plane, the rotary inertia in the other is used for torsion alone
             values[:, i, j] = profile(xi)
     return values

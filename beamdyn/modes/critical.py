@@ -120,7 +120,7 @@ class CriticalPoint(SceneResult, StatesModelError):
     def left_out_effects(self) -> LeftOutEffects:
         """Changes of the critical speed by each neglected effect, of shape ()."""
         if self.of_bent_beam and np.isfinite(self.speed):
-            return nothing_known(self.scene, "changes are not computed for a beam that is already bent")
+            return nothing_known(self.scene, "not computed for a beam that bends before it loses stability")
         if self.model is None or not (0 < self.speed < np.inf and np.isfinite(self.error)):
             return nothing_known(self.scene)
         return left_out_of_critical_speed(self.model, self.speed)
@@ -172,7 +172,7 @@ def critical_speed(
 def critical_point(
     scene: Scene, discretization: DiscretizationChoice = "ritz", tolerance: float | None = None
 ) -> CriticalPoint:
-    """Compute the critical speed and its error: the lowest with a singular stiffness K0 + omega^2 K2.
+    """Compute the critical speed, the lowest speed omega with a singular stiffness K0 + omega^2 K2.
 
     A theoretical argument first decides whether a critical speed exists (`beamdyn.modes.buckling`).  If so,
     it is searched with finer and finer discretizations, because the buckling mode may be a short bend at the
@@ -229,15 +229,18 @@ def critical_point(
 def _of_straight_beam(
     scene: Scene, discretization: DiscretizationChoice, target: float, tolerance: float | None, start: float
 ) -> CriticalPoint:
-    """Find the critical speed of a straight beam, by theory or a search; `start` is a time for provenance."""
+    """Find the critical speed of a straight beam, by theory or a search.
+
+    `start` is the time at which the computation began, by `time.perf_counter` [s].
+    """
     target = affordable_target(scene, discretization, target)
     models = partial(critical_search.models_of_critical_speed, target=target, cheapest=tolerance is not None)
     first, buckling = models(scene, discretization), decide_buckling(scene)
     if buckling.speed == np.inf and _is_within_theory(next(models(scene, "ritz"))):
-        # The argument, which uses only the strain's order of magnitude, excluded buckling below 1 % strain; a
-        # model shows that there is buckling.
+        # The theoretical argument, which uses only the strain's order of magnitude, excluded buckling below
+        # 1 % strain.  But a model shows such buckling, so that its speed is searched.
         buckling = replace(buckling, speed=None)
-    # The search is for buckling by bending, within the validity of linear theory.
+    # A speed of buckling by bending is searched unless theory has excluded it or already gives the speed.
     sought = buckling.exists is not False and buckling.speed is None
     if buckling.speed == 0 or (not sought and not scene.physics.stretch):
         return _argued(scene, buckling, start)
@@ -270,7 +273,11 @@ def _of_straight_beam(
 
 
 def _is_lower(bending: critical_search.FoundSpeed, found: critical_search.FoundSpeed) -> bool:
-    """Return whether bending becomes critical first; a basis that resolves stretch may miss that speed."""
+    """Return whether bending alone is critical at a speed no higher than that found with stretch.
+
+    `bending` was computed without stretch, `found` with it.  The basis that resolves stretch may miss the
+    critical speed of bending.
+    """
     same = min(bending.error + found.error, UNRESOLVED)
     return bool(np.isfinite(bending.speed)) and bending.speed <= found.speed * (1 + same)
 
@@ -327,11 +334,14 @@ def _is_within_theory(model: Model) -> bool:
     if np.isinf(found.error):
         return False
     _, strain = static_load(model, np.array([found.speed]))
-    return not strain[0] > LARGE_STRAIN  # nan if the axial stiffness is not known
+    return not strain[0] > LARGE_STRAIN  # True if the strain is nan: the axial stiffness is not known
 
 
 def _argued(scene: Scene, buckling: Buckling, start: float) -> CriticalPoint:
-    """Build the critical point that follows from theory alone; `start` is a time for its provenance."""
+    """Build the critical point that follows from theory alone.
+
+    `start` is the time at which the computation began, by `time.perf_counter` [s].
+    """
     speed = np.inf if buckling.speed is None else buckling.speed
     return CriticalPoint(
         speed=speed,

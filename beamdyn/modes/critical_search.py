@@ -22,7 +22,8 @@ _SIZED_FOR = 5
 _NEAR_TIP = 0.5
 # Relative rounding error of a critical speed, times the cube of the shortest element's length x/L.
 _OF_SHORTEST = 4 * float(np.finfo(float).eps)
-# Relative rounding error of a bent beam, whose stiffness is a small sum of large terms.
+# Relative rounding error of the speed at which a bent beam loses stability: its stiffness is a small sum of
+# large terms.
 _ROUNDING_OF_BENT = 1e-10
 # Smallest error target for meshes of a bent beam, because each mesh costs as much as all coarser meshes.
 _MESHES_OF_BENT = 1e-5
@@ -49,7 +50,7 @@ def models_of_critical_speed(
     """Iterate over the models for the search of a critical speed, from coarse to fine: see `list_models`.
 
     The first model is built at once, so that a beam with too many segments is refused even if no model needs
-    to be solved.
+    to be solved.  The models are chosen for the error `target`; if `cheapest`, they start with the smallest.
     """
     named = isinstance(discretization, str)
     modes, split = (_SIZED_FOR, split_tip(scene)) if named else (1, scene)
@@ -89,15 +90,16 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         coarse = model.coarser
         ends = discretization.cells(model.scene.modelled_beam).ends
         shortest = float(np.diff(ends)[ends[1:] > _NEAR_TIP].min())
-        noise = max(noise, _OF_SHORTEST * shortest**-3)  # element integrals have a rounding error
+        # Rounding errors of the integrals over the shortest element.
+        noise = max(noise, _OF_SHORTEST * shortest**-3)
     fine_softening, coarse_softening = solver.softening, coarse.solver.softening
     distance = fine_softening - coarse_softening
     softening = fine_softening if order is None else fine_softening + distance / (2**order - 1)
-    if not 0 < softening < np.inf:  # the condition is False for nan, too
+    if not 0 < softening < np.inf:  # this is true for nan, too
         return FoundSpeed(model, coarse, np.inf, np.inf, np.inf)
     rounding = solver.critical_rounding
     noise, left = rounding + noise, abs(distance)
-    if order is not None:  # short segments may prevent a mesh with half the elements of another
+    if order is not None:  # extrapolation needs halved meshes, which short segments may prevent
         half = coarse.coarser.solver
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
@@ -125,7 +127,10 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
 
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
-    """Find the speed of loss of stability, the error by the coarser model, and whether a speed was found."""
+    """Find the speed at which the bent beam loses stability; also return whether such a speed was found.
+
+    The error of the speed is estimated by comparison with the coarser model.
+    """
     lost = (find_loss_of_stability(each.deflected.load) for each in (model, model.compared))
     (squared, is_lost), (of_coarse, also) = lost
     distance = abs(of_coarse - squared)

@@ -38,7 +38,7 @@ from beamdyn.scene.mount import Mount, aligned_cos_sin
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import check_speeds
 
-_FINE = 0.05  # arc length of a step, small enough for smooth curves in a plot
+_FINE = 0.05  # nondimensional arc length of a continuation step, small enough for smooth curves in a plot
 _MOST_POINTS = 2000  # largest number of points of a branch
 _STEEPEST = 2 * np.pi  # largest slope angle [rad] up to which a branch is continued
 _UNSTABLE = "the straight beam, for which effects are estimated, is unstable"
@@ -193,14 +193,14 @@ def equilibrium(
     solver, coarse = solution.model.deflected, cast("DeflectedSolver", solution.model.coarse_solver)
     q = solver.equilibria(speeds)[0]
     tip, of_coarse = solver.elastica.beam.at(q).tip, np.full(3, np.inf)
-    with suppress(NoEquilibrium):  # the coarser model buckles at a higher speed
+    with suppress(NoEquilibrium):  # the coarser model buckles later, and may have no such equilibrium yet
         of_coarse = coarse.elastica.beam.at(coarse.equilibria(speeds)[0]).tip
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_one else 1.0)
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
-    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable one on the opposite side'
+    remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable one, on the opposite side'
     said = "the equilibrium is unstable ", at, f": a small motion grows at {growth:.3g} 1/s; {remedy}"
     rate = {"quantity": "growth rate [1/s]", "value": growth, "limit": 0.0}
     unstable = Statement(*said, kind=GROWING, remedy=remedy, **rate)
@@ -220,10 +220,10 @@ def equilibrium(
 
 
 def _rounding(load: Loading, q: np.ndarray, p: float) -> float:
-    """Estimate the rounding error of positions over the length, at coordinates q and squared speed p.
+    """Estimate the rounding error of positions, divided by the length, at coordinates q and squared speed p.
 
     It includes the deflection by a change of all loads within rounding, which is large near buckling.  The
-    loads are as large as the elastic forces, which balance them.
+    magnitude of the loads is taken from the elastic forces, which balance them.
     """
     turned = np.linalg.solve(load.at(q, p).change, load.elastica.beam.stiffness @ q) @ load.angles
     return _ROUNDING + _OF_LOADS * float(np.abs(turned).max())
@@ -374,9 +374,10 @@ def equilibrium_branches(
     else:
         speeds = np.union1d(np.linspace(0, top, 101), min(top, _JUST_BELOW * solver.critical_speed))
         tips = np.tile(_in_space(load.elastica.beam.at(rest).tip, scene.mount), (len(speeds), 1))
-        # The straight beam is stable below one speed: its stiffness is linear in the squared speed.
+        # The straight beam is stable below its critical speed and at no speed above it, because its stiffness
+        # is linear in the squared speed.
         branches = [EquilibriumBranch("straight", speeds, tips, speeds < solver.critical_speed, np.empty(0))]
-    try:  # continues another branch from the top speed through its turning points
+    try:  # follows another branch, if there is one, from the top speed through its turning points
         start_of_bent = continuation.start_curve(load, find_bent(load, top), top**2, -1.0)
         branches.append(_collect("bent", load, start_of_bent, top))
     except NoEquilibrium as error:
@@ -394,7 +395,7 @@ def equilibrium_branches(
 def _collect(name: str, load: Loading, start: continuation.Point, top: float) -> EquilibriumBranch:
     """Collect the points of a branch until it passes the top speed, or until the beam has turned by 2 pi."""
     points = [start]
-    with suppress(continuation.NotConverged):  # until the branch cannot be continued
+    with suppress(continuation.NotConverged):  # the points end where the branch cannot be continued
         for point in continuation.follow(load, start, _FINE):
             if point.p >= top**2 and point.p_rate:
                 at_top = continuation.find_at(load, points[-1], point, top**2)

@@ -47,7 +47,7 @@ def _integral(profile: Profile) -> float:
 
 
 def bound_on_cells(profile: Profile, ends: np.ndarray) -> np.ndarray:
-    """Bound the absolute value of a property on cells, by its Legendre coefficients on each."""
+    """Return an upper bound of a property's absolute value on each cell, from its Legendre coefficients."""
     parts = profile.split(ends.tolist())
     first = np.searchsorted(parts.breakpoints, ends[:-1])
     return np.maximum.reduceat(np.abs(parts.series).sum(axis=0), first)

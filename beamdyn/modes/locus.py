@@ -46,7 +46,7 @@ _EXTRA_MODES = 2  # number of additional higher modes, with which the requested 
 
 @dataclass(frozen=True)
 class Locus(TellsKinds, SceneResult, StatesModelError):
-    """Modes over speeds, each followed through crossings and veerings; numbered at the first speed.
+    """Modes followed over speed through crossings and veerings, numbered by their order at the first speed.
 
     `error` is the numerical error.  `left_out` contains the estimated relative change of each frequency by
     each neglected physical effect at the `left_out_speeds` (k,), `model_error` (k, modes) the magnitude of
@@ -67,7 +67,7 @@ class Locus(TellsKinds, SceneResult, StatesModelError):
     error : ndarray, shape (S, modes)
         Estimated relative error of the eigenvalues.
     status : ndarray of str, shape (S, modes)
-        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
+        "stable", "divergence", "flutter", "overdamped", or "neutral" (a free rotation with the frequency 0).
     eigenvalue : ndarray of complex, shape (S, modes)
         Eigenvalue s of the motion exp(s t) [1/s].
     plane_share : ndarray, shape (S, modes, 2)
@@ -145,7 +145,7 @@ class Locus(TellsKinds, SceneResult, StatesModelError):
         return super().to_dict() | {"left_out_speeds": self.left_out_speeds.tolist()}
 
     def names(self) -> tuple[str, ...]:
-        """Return the names of the modes: a number, and the kind unless the mode begins as bending."""
+        """Return the names of the modes: the number, and the kind unless it is bending at the first speed."""
         kinds = (f", {kind}" if kind != BENDING else "" for kind in self.kind[0])
         return tuple(f"mode {i}{kind}" for i, kind in enumerate(kinds, 1))
 

@@ -67,7 +67,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
     growth_rate : ndarray, shape (m,)
         Growth rate [1/s]: positive for an unstable mode, negative for a damped one.
     status : ndarray of str, shape (m,)
-        "stable", "divergence", "flutter", "overdamped", or "neutral": free to turn at frequency 0.
+        "stable", "divergence", "flutter", "overdamped", or "neutral" (a free rotation with the frequency 0).
     eigenvalue : ndarray of complex, shape (m,)
         Eigenvalue s of the motion exp(s t) [1/s].
     tip, tip_across : ndarray, shape (m,)
@@ -76,9 +76,11 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
     plane_share : ndarray, shape (m, 2)
         Fraction of the kinetic energy of the mode's deflection (without stretch) in each direction.
     load, load_across : ndarray, shape (m,)
-        Modal loads under a unit root acceleration in either direction, P in modal coordinates [kg^1/2].
+        Modal loads under a unit root acceleration in either direction of bending [kg^1/2]: P of
+        docs/conventions.md in modal coordinates.
     angular_load, angular_load_across : ndarray, shape (m,)
-        Modal loads under a unit angular acceleration in either plane, Q in modal coordinates [kg^1/2 m].
+        Modal loads under a unit angular acceleration in either plane of bending [kg^1/2 m]: Q of
+        docs/conventions.md in modal coordinates.
     static_deflection : float
         Static tip deflection under rotation [m], with its sign; its magnitude if two planes are modelled; nan
         above the critical speed.
@@ -177,7 +179,7 @@ class Modes(TellsKinds, SceneResult, StatesModelError):
         return x, y, np.real(self.surface(x, eta)), np.real(self.shape(x, 1))
 
     def _over_length(self, x: np.ndarray | Sequence[float]) -> np.ndarray:
-        """Divide positions x by the length; raise a ValueError if one [m] is not on the beam."""
+        """Divide positions x [m] by the length; raise a ValueError if one of them is not on the beam."""
         xi = np.asarray(x, dtype=float) / self.scene.beam.length
         if xi.size and not (xi.min() >= 0 and xi.max() <= 1 + 1e-12):
             raise ValueError(f"x: positions run from 0 to the length {self.scene.beam.length:g} m")
@@ -391,6 +393,6 @@ def warn_of_modes(
 
 
 def provenance_of(solution: EstimatedModes, start: float) -> Provenance:
-    """Build the provenance record of modes, with the time since a start by `perf_counter` [s]."""
+    """Build the provenance record of modes; `start` is when the computation began, by `perf_counter` [s]."""
     names = str(solution.model.discretization), str(solution.model.compared.discretization)
     return Provenance.since(start, *names)

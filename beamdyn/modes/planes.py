@@ -86,13 +86,13 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
         )
         raise InvalidValue("point_masses", len(lumps), of_lumps, "leave them out, or model one plane")
     if scene.physics.planes == 2 and speed and scene.mount.precone:
-        gyroscopic = "it causes gyroscopic coupling of two planes, but bounds need equations without it"
+        gyroscopic = "precone couples two planes by gyroscopic terms, but bounds need equations without them"
         remedy = "give 0, or speed = 0, or model one plane"
         raise InvalidValue("precone", scene.mount.precone, gyroscopic, remedy, "rad")
 
 
 def _quarter_turns(beam: Beam) -> int | None:
-    """Return by how many 90 degree turns the twist turns every section; None if not one whole number."""
+    """Return by how many 90 degree turns the twist turns all sections; None unless one whole number."""
     if beam.twist is None:
         return 0
     if any(any(row[1:]) for row in beam.twist.coefficients):

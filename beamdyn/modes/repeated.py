@@ -70,7 +70,7 @@ class JudgedByRepeating(StatesModelError):
         if self.again is None or not np.isfinite(self.judged(self)).any():
             return nothing_known(self.scene, _LOADED if self.again is None else _NOTHING)
         found, name = left_out_by_solving(self.scene, self.solve), LARGE_DEFLECTION.name
-        if reason := found.not_known.get(name):  # unknown change by large deflection
+        if reason := found.not_known.get(name):  # not computed by solving: estimate it
             found = _with_change(found, name, self.judged(self), self.bent_values(self.judged(self), reason))
         return replace(found, counted=self.counted or found.counted)
 
@@ -89,7 +89,8 @@ class JudgedByRepeating(StatesModelError):
         except InvalidValue as refusal:
             if name == LARGE_DEFLECTION.name:
                 return self.bent_values(self.solve(scene.straightened, "").values, refusal.bound)
-            if scene.models_width and name == CAMBER.name:  # camber was refused: flat sections give a bound
+            # The analysis refuses camber: sections that are held flat give an upper bound of its effect.
+            if scene.models_width and name == CAMBER.name:
                 held_flat = without_camber(replace(scene, physics=self.scene.physics))
                 return self.solve(held_flat, name)._replace(assumed=MOST_CAMBER)
             return SolvedValues(np.full(own.shape, np.nan), refusal.bound)
@@ -104,9 +105,9 @@ class JudgedByRepeating(StatesModelError):
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
         """Estimate values with large deflection from those of the straight beam and the first frequency.
 
-        The values vary in proportion to the compliance of the first mode.  Where that does not hold
-        (`follows_stiffness`), they are nan, with the given reason.  If rotation does not bend the beam, they
-        are the `straight` values.
+        The estimate multiplies the `straight` values by the change of the first mode's compliance.  If they
+        are not proportional to it (`follows_stiffness` is False), the result is nan, with the given reason.
+        If rotation does not bend the beam, the result is the `straight` values.
         """
         effects = left_out_of_frequencies(self.scene, self.bending_speed, 1)
         name = LARGE_DEFLECTION.name

@@ -37,9 +37,10 @@ stiffness tensor D(x) of the sections, turned by the twist,
 
     a(u, u) = int k . D k,    P_mass = int rho A |u|^2 + m |t|^2,    P_tension = int N |u'|^2,
 
-in the plane of rotation P_soft = int rho A (d . u)^2 + m (d . t)^2 with its direction d, and of the slope
-vector s = u'(1) at the tip the forms s . T s with the tensors T of its inertia and of its spin.  Without
-precone nothing is gyroscopic: z are the eigenvalues of a form, as in one plane.
+with P_soft = int rho A (d . u)^2 + m (d . t)^2 for the deflection in the plane of rotation, in the direction
+d; and, with the slope vector s = u'(1) at the tip, the forms s . T s with the tensors T of the inertia and of
+the spin of the tip body.  Without precone nothing is gyroscopic: z are the eigenvalues of a form, as in one
+plane.
 
 **The traces** on all functions need no twist.  The slope in a direction e is int_0^x e . k, of squared norm
 int_0^x e . D^-1 e; the sum over both directions has the trace of D^-1, 1/EI_1 + 1/EI_2 however the section is
@@ -52,8 +53,8 @@ K = (H/2) sign(s - x) (0, 1; -1, 0).  The squares of its eigenvalues relative to
 H^2 det(int D^-1) / 2, and on the tail at most that less the trace on the Ritz part.
 
 **The coupling.**  Loads cause a moment vector F by the static balance of the cantilever, in fixed axes; with
-any curvatures p of the Ritz part the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where the
-axes of the section have one EI each.  The rest is as in one plane.
+any curvatures p of the Ritz part the tail sees F - D p, and R = int (F - D p) . D^-1 (F - D p), where D^-1 is
+diagonal in the axes of the section, with 1/EI of each.  All else is as in one plane.
 """
 
 from __future__ import annotations
@@ -166,7 +167,10 @@ class Enclosure(ABC):
         return self._lower_form(*self._coefficients(z))
 
     def stiffness_form(self, squared_speed: float) -> np.ndarray | None:
-        """Compute the form Q_z - R/q (see module) at z = 0: if positive definite, lower speeds are stable."""
+        """Compute the form Q_z - R/q (see module) at z = 0.
+
+        If it is positive definite, the beam is stable at this and at all lower speeds.
+        """
         return self._lower_form(squared_speed * self.spin, squared_speed * self.spin_terms)
 
     def _lower_form(self, coefficients: np.ndarray, terms: np.ndarray) -> np.ndarray | None:
@@ -184,7 +188,7 @@ class Enclosure(ABC):
         return self.stiffness + self._sum(coefficients) - R / (1 - tail) - allowance * np.eye(len(R))
 
     def _coefficients(self, z: float) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the coefficients c_j(z) of the forms (see module), and sums of absolute terms."""
+        """Compute the coefficients c_j(z) of the forms (see module), and the sums of their |terms|."""
         squared = self.speed**2
         return squared * self.spin - z * self.mass, squared * self.spin_terms + abs(z) * self.mass
 
@@ -230,7 +234,7 @@ class PlaneEnclosure(Enclosure):
         self.spin_terms = np.append(np.abs(self.spin[:3]), np.abs(ends).sum())
         self.mass = np.array([0.0, 0.0, 1.0, tip.inertia])
         # Rounding error of a sum with as many products as the Gauss rule has points, relative to its terms:
-        # doubled for the factors, and again for the eigensolution.
+        # it is doubled for the rounding errors of the factors, and doubled again for the eigensolution.
         self.unit = 4 * _EPS * (self.part.quadrature.xi.size + len(self.stiffness))
 
     def _tail(self, coefficients: np.ndarray, terms: np.ndarray) -> float:
@@ -243,7 +247,7 @@ class PlaneEnclosure(Enclosure):
 
     @cached_property
     def _residuals(self) -> tuple[np.ndarray, float]:
-        """Integrals of products of unbalanced moments, and a bound of the ratio of EI within a cell.
+        """Integrals of products of unbalanced moments; bound of the largest ratio of two EI in one cell.
 
         The shape of the integrals is (forms, functions, forms, functions).
         """
@@ -317,7 +321,8 @@ class CoupledEnclosure(Enclosure):
         self._direction, self._slope = d, self.part.slope[..., -1]
         tilts = [self._slope @ T @ self._slope.T for T in self._tensors]
         self.forms = np.concatenate([self.part.forms(d), tilts, self.part.twisting[None]])
-        # Each point has two products, one per direction; `misfit` is the relative error of the stiffness.
+        # A sum over the Gauss points has two products at each point, one per direction.  To its rounding
+        # error the relative error of the stiffness, `misfit`, is added.
         products = 2 * self.part.quadrature.xi.size
         self.unit = 4 * _EPS * (products + len(self.stiffness)) + self.part.misfit
 
@@ -331,7 +336,10 @@ class CoupledEnclosure(Enclosure):
 
     @cached_property
     def tails(self) -> np.ndarray:
-        """Upper bounds of tension, mass, tip-slope forms over energy, for functions outside the basis."""
+        """Upper bounds of the forms of tension, mass and tip slope, divided by the elastic energy.
+
+        They hold for functions outside the basis.
+        """
         forms = [*self.forms[:3], self._slope @ self._slope.T]
         head = [np.trace(np.linalg.solve(self.stiffness, form)) for form in forms]
         return np.maximum(self._traces - head, 0) + self.unit * self._traces
@@ -385,7 +393,7 @@ class CoupledEnclosure(Enclosure):
         return self.unit * products**2 + variation * len(self.stiffness) * moments**2
 
     def _of_all(self, traces: np.ndarray, twisting: float) -> np.ndarray:
-        """List a measure of each of the seven forms (a trace or a bound) in the order of the class.
+        """List a trace or bound of each of the seven forms, in the order of the docstring of the class.
 
         `traces` has it for both tensions, the mass and the slope at the tip, `twisting` for the last form.
         """

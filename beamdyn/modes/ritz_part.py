@@ -11,7 +11,7 @@ that is rotated by the twist beta(x).  On cells the curvatures *in the axes of t
 so that the energy and the moments D p contain no cosine of the twist.  Only curvatures along the fixed
 directions e1, e2, and moments in the axes of the section, contain it.  Polynomials replace its cosine and
 sine; they are exact for a beam whose stiffness is within (1 -+ `misfit`) D(x): see `twist_degree`.  An array
-(n, 2, N) has components along e1, e2 or, where it says so, in the axes of the section.
+(n, 2, N) has components along e1, e2 or, where its docstring says so, in the axes of the section.
 
 In shapes of arrays, n counts functions, N Gauss points or nodes, c cells, m moments, and k point masses.
 """
@@ -36,7 +36,8 @@ from beamdyn.modes.flexibility import bound_on_cells
 from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.profile import ONE, Profile
 
-# Largest number of functions (bending moments) in each of two coupled directions, which take two seconds.
+# Largest number of functions (bending moments) in each of two coupled directions.  With so many, the bounds
+# take about two seconds.
 MOST_MOMENTS = 100
 # Largest number of segments with which polynomials on each segment need fewer functions than bending moments
 # that are polynomials along the whole beam.
@@ -140,7 +141,10 @@ def basis(beam: Beam, functions: int) -> Ritz:
 
 
 def _bends_by_moments(beam: Beam) -> bool:
-    """Return whether moments suit a beam better than polynomials: many segments, or a strong taper."""
+    """Return whether trial functions should be bending moments over EI, rather than polynomials.
+
+    This is so for many segments or a strong taper.
+    """
     if len(beam.breakpoints) - 1 > _FEW_SEGMENTS:
         return True
     stiffness = beam.bending_stiffness.at_points(_SAMPLES)
@@ -224,7 +228,10 @@ class PlaneRitzPart(RitzPart):
 
     @cached_property
     def moments(self) -> np.ndarray:
-        """Bending moments at the Gauss points by each function's loads, as in `forms`: (4, n, points)."""
+        """Bending moments at the Gauss points by each function's loads, in the order of `forms`.
+
+        The shape is (4, functions, points).
+        """
         tension_b, tension_a, mass = self.loads
         slope, (xi, lumped) = self.slope[:, :-1], self.beam.lumps
         inertia = self.from_tip(self.from_tip(mass * self.deflection[:, :-1]))
@@ -402,7 +409,7 @@ class CoupledRitzPart(RitzPart):
 
     @cached_property
     def twisting_size(self) -> float:
-        """Norm of all slopes times the norm of all curvatures, to which rounding errors are relative."""
+        """Norm of all slopes times norm of all curvatures: the scale of the rounding errors of `twisting`."""
         sizes = (np.sqrt(np.trace(self.gram(u, np.ones(1)))) for u in (self.slope[..., :-1], self.bending))
         return float(math.prod(sizes))
 
@@ -437,8 +444,9 @@ def twist_degree(turn: float, ratio: float) -> tuple[int, float]:
 
     For an angle of at most `turn` from the middle of its range, interpolation in Chebyshev points has an
     error of at most e = turn^(m+1) / (2^m (m+1)!) in each.  The matrix that rotates curvatures is then
-    R (1 + E) with |E| <= 2 e, and D becomes R (1 + E)^-T diag (1 + E)^-1 R^T.  In the norm of the energy E
-    grows at most by the square root of the ratio of the stiffnesses: a relative misfit of 5 sqrt(ratio) e.
+    R (1 + E) with |E| <= 2 e, and the stiffness tensor D = R diag R^T becomes R (1 + E)^-T diag (1 + E)^-1
+    R^T.  In the norm of the energy, E grows at most by the square root of the `ratio` of the two bending
+    stiffnesses: the relative error of the stiffness is at most 5 sqrt(ratio) e.
     """
     for degree in range(_MOST_DEGREE):
         error = turn ** (degree + 1) / (2**degree * math.factorial(degree + 1))

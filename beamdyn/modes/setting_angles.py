@@ -160,7 +160,8 @@ def setting_angle_limits(
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = model_to_tolerance(tangential, discretization, speeds, 1, tolerance)
     first, second = _limits(model, top_speed)
-    error, coarse = _ROUNDING, model.coarser  # at infinite speed the limits are exact for the given basis
+    # At an infinite top speed only rounding is stated, because the limits then depend on the given basis.
+    error, coarse = _ROUNDING, model.coarser
     if bounded:
         of_coarse, of_coarsest = (np.array(_limits(each, top_speed)) for each in (coarse, coarse.coarser))
         errors = error_of_finest(THREE_DISCRETIZATIONS, (first, second) - of_coarse, of_coarse - of_coarsest)
@@ -183,7 +184,7 @@ def setting_angle_limits(
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Compute both setting angles [rad] from the matrix A - cos(setting angle) B of the squared speed.
+    """Compute both setting angles [rad] from the stiffness A - cos(setting angle) B per squared speed.
 
     B is the radius of the root times the stiffness due to the tension by a unit root acceleration.
     """

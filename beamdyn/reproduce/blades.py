@@ -45,7 +45,7 @@ def blade_scene(name: str, physics: bd.Physics | None = None, twisted: bool = Tr
 def whole_blade_scene(name: str, by_elements: bool = False) -> bd.Scene:
     """Build the blade with torsion and offsets, by stations or, if `by_elements`, by BModes' elements.
 
-    Each element of BModes has the section at its middle, but the twist varies along it.
+    Each element of BModes has the properties of the section at its middle, but the twist varies along it.
     """
     data, plain = stations(name), blade_scene(name)
     x, ends = data["stations"], data["element_ends"]

@@ -98,7 +98,7 @@ def half_unit(text: str) -> float:
 def compare_modes(
     where: str, printed: Iterable[object], ours: Iterable[float], errors: Iterable[float]
 ) -> list[PrintedValue]:
-    """Compare a row's printed values, one for each mode, with computed ones, which have relative errors."""
+    """Compare the printed values of a row, one for each mode, with computed ones of given relative errors."""
     rows = enumerate(zip(map(str, printed), map(float, ours), map(float, errors), strict=False), 1)
     return [PrintedValue(where, mode, text, value, error * abs(value)) for mode, (text, value, error) in rows]
 

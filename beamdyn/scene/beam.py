@@ -135,7 +135,7 @@ class Beam(FieldsOnly, OneLine):
             kind("section", self.section, Rectangle, "Beam.rectangular makes one")
             made = self.section.properties.items()
             if not all(input_checks.alike(getattr(self, name), profile) for name, profile in made):
-                set_fields(self, section=None)  # the section no longer determines a replaced property
+                set_fields(self, section=None)  # a property that was replaced does not follow from it
         if self.has_offsets:  # offsets exclude a rectangular section, whose centres coincide
             set_fields(self, section=None)
         along = (name for name in (*_REQUIRED, *OPTIONAL_PROPERTIES) if name != "outer_fibre")
@@ -301,7 +301,7 @@ class Beam(FieldsOnly, OneLine):
             Angles by which the axis leaves its direction at the root [rad], over the fraction x/L of its
             length: the prebend in the plane of bending, the sweep out of it.  A jump is a kink of the axis.
         mass_offset, tension_offset : float, Polynomial, Table or callable, optional
-            Distance of the centre of mass, and of that of tension, from the shear centre in the second
+            Distance of the centre of mass, and of the centre of tension, from the shear centre in the second
             direction of the section [m], of either sign; 0 if not given.  They couple bending and torsion,
             and need `torsion_stiffness`.  Bending stiffnesses are about the centre of tension.
 
@@ -439,7 +439,7 @@ class Beam(FieldsOnly, OneLine):
 
     @cached_property
     def is_curved(self) -> bool:
-        """Whether sweep or prebend make the axis of the unloaded beam other than straight."""
+        """Whether sweep or prebend make the axis of the unloaded beam curved or kinked."""
         angles = (angle for angle in (self.sweep, self.prebend) if angle is not None)
         return any(bool(np.abs(angle.series).max() > _STRAIGHT) for angle in angles)
 

@@ -20,10 +20,11 @@ moment, and q the charge per length:
 =========  =====================  ==========================
 
 b is the width, h the thickness of the beam, t that of a layer; z = (h + t)/2 is the distance of the middle of
-a layer from the middle of the beam, and z_n the distance of the neutral axis from there, which a layer on one
-side only moves.  As no axial force resists, a voltage on such a layer also stretches the beam, by the strain
-e b v/(E A); this adds to the capacitance.  Series and parallel as in Erturk and Inman (2009), Smart Materials
-and Structures 18, 025009; unimorph: own derivation, docs/harvester.md.
+a layer from the middle of the beam, and z_n the distance of the neutral axis from the middle of the beam,
+which is not 0 if only one side has a layer.  As no axial force resists, a voltage on such a layer also
+stretches the beam, by the strain e b v/(E A); this adds to the capacitance.  The rows "series" and "parallel"
+follow Erturk and Inman (2009), Smart Materials and Structures 18, 025009; "unimorph": own derivation,
+docs/harvester.md.
 """
 
 from __future__ import annotations
@@ -67,8 +68,9 @@ class Harvester(FieldsOnly):
         Piezoelectric stress constant [C/m2], of either sign, modulus at constant field [Pa] and permittivity
         at constant strain [F/m], of a layer that is free across and through its thickness: the reduced
         constants of a beam, d31/s11E, 1/s11E and eps33T - d31^2/s11E.  Entries of a data sheet's stiffness
-        matrix, for a layer held in both, differ: of PZT-5A c11E is twice as large, and e31 half as large.
-        A wide strip is held across near its clamp, which is modelled if `poissons_ratio` is given.
+        matrix differ, because they are for a layer whose strain in both directions is prevented: of PZT-5A
+        c11E is twice as large, and e31 half as large.  Near its clamp a wide strip cannot strain across,
+        which is modelled if `poissons_ratio` is given.
     d31, s11e, eps33t : float, optional
         In their place the strain constant [m/V], compliance at constant field [1/Pa] and permittivity at
         constant stress [F/m], as data sheets have them.
@@ -79,7 +81,8 @@ class Harvester(FieldsOnly):
     strain_limit : float
         Largest strain that a layer bears; inf where none is known.
     poissons_ratio : float, optional
-        -s12E/s11E, for camber, which a clamp hinders: that increases stiffness and coupling near it.
+        Poisson's ratio of the layers, -s12E/s11E; needed to model camber.  A clamp hinders camber, which
+        increases stiffness and coupling near the clamp.
 
     Raises
     ------
@@ -153,15 +156,15 @@ class Harvester(FieldsOnly):
         if material.permittivity <= 0:
             bound = "it must be above {limit}, d31^2/s11e: no material has more coupling"
             limit = material.coupling * (self.d31 or 0.0)
-            raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check all three", "F/m", limit)
+            raise InvalidValue("harvester.eps33t", self.eps33t, bound, "check the constants", "F/m", limit)
         nu = self.poissons_ratio
         if nu is not None and material.held_across(nu).permittivity <= 0:
-            bound = "held along and across, a layer would have no permittivity: no material couples so much"
-            raise InvalidValue("harvester.poissons_ratio", nu, bound, "check all four")
+            bound = "without strain in its plane permittivity would be 0 or less: no material couples so much"
+            raise InvalidValue("harvester.poissons_ratio", nu, bound, "check the constants")
 
     @property
     def material(self) -> Material:
-        """Stiffness, coupling, permittivity of the layers: strain along the beam, field through the layer."""
+        """Constants of the layers' material for strain along the beam and a field through the thickness."""
         if self.e31 is not None and self.c11e is not None and self.eps33s is not None:
             return Material(self.c11e, self.e31, self.eps33s)
         assert self.d31 is not None and self.s11e is not None and self.eps33t is not None, "one set is given"
@@ -173,8 +176,8 @@ class Harvester(FieldsOnly):
         Raises
         ------
         ValueError
-            If it is no beam, has no rectangular section, is twisted, carries layers already or ends before
-            them, or its section varies under them.
+            If `beam` is no `Beam`, has no rectangular section, is twisted, carries layers already, or ends
+            before these layers do, or if its section varies under them.
         """
         span, (b, h) = self._span_on(beam), self._sides_on(beam)
         modulus, density = beam.section.youngs_modulus, beam.section.density
@@ -264,7 +267,7 @@ class Electrodes(FieldsOnly):
     bare : Beam
         The beam without layers and electrodes.
     span : tuple of float
-        Begin and end of the electrodes, as x/L.
+        Start and end of the electrodes, as x/L.
     coupling : float
         Coupling theta: bending moment per voltage [N m/V].
     capacitance_per_length : float

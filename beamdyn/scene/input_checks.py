@@ -31,7 +31,7 @@ _BEYOND = {PointMass: "a body beyond the tip is a TipMass", PointSpring: "hold t
 def check_together(beam: Beam) -> None:
     """Refuse properties given without others that they need, and a tip body that is behind the root."""
     if beam.twist is not None and beam.second_bending_stiffness is None:
-        bound, other = "it turns two directions of bending, and needs {other}", "second_bending_stiffness"
+        bound, other = "twist turns two directions of bending: it needs {other}", "second_bending_stiffness"
         said: dict[str, Any] = {"other": other, "where": " at the tip"}
         raise InvalidValue("twist", beam.tip_twist, bound, GIVE_OR_COMPUTE, "rad", **said)
     if beam.torsion_stiffness is None:

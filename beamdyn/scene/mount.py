@@ -194,7 +194,7 @@ class Mount(OneLine):
             name: angle(name, getattr(self, name)) for name in ("setting_angle", "bending_angle", "precone")
         }
         set_fields(self, radius=not_negative("radius", self.radius, "m", remedy), **angles)
-        bound = "it must be less than 90 deg: such a beam would stand along the axis of rotation"
+        bound = "it must be less than 90 deg, at which the beam would stand along the axis of rotation"
         refuse(abs(self.precone) >= math.pi / 2, "precone", self.precone, "rad", bound, _PRECONE["remedy"])
         if self.precone and aligned_cos_sin(self.setting_angle) != (-1.0, 0.0):
             bound = "only a beam that points outward has a precone"
@@ -243,7 +243,8 @@ def exact_cos_sin(angle: float, least: float = ROUNDED_ANGLE) -> tuple[float, fl
 def aligned_cos_sin(angle: float) -> tuple[float, float]:
     """Compute cosine and sine of an angle [rad], 0 within `RIGHT_ANGLE` of a multiple of a quarter turn.
 
-    Used for bending angles, whose square affects frequencies, and for decisions: no beam is mounted more
-    accurately, and whether directions are coupled, or loaded across, must not depend on a last digit.
+    The tolerance `RIGHT_ANGLE` is smaller than the accuracy of any mounting.  The function is used for
+    bending angles, whose small errors affect frequencies by their square, and for decisions whether two
+    directions are coupled or a beam is loaded across, which must not depend on the last digit of an angle.
     """
     return exact_cos_sin(angle, RIGHT_ANGLE)

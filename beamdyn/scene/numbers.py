@@ -54,7 +54,7 @@ _SIDE_POWERS = {
 
 @cache
 def units() -> dict[str, str]:
-    """Return the SI units of all numbers of scenes, by path; paths of list members have "[]", no index."""
+    """Return the SI units of all numbers of scenes, by path, with "[]" for the index of a list member."""
     of_beam = {"length": "m"} | SECTION_UNITS | PROPERTY_UNITS | ANGLE_UNITS
     found = {f"beam.{name}": unit for name, unit in of_beam.items()}
     found |= {SCALE + name: "" for name in (*SIDES, *PROPERTY_UNITS)} | dict(_numbers(TipMass, "beam.tip"))
@@ -197,7 +197,7 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
     ------
     InvalidValue
         If a value is out of its range, or the scene has no such number: no such member of a list, another
-        motion, or a beam of no rectangular section where a side or the material of one is given.
+        motion, or no rectangular section although a side or the material of a section is given.
     """
     of_beam = {path.removeprefix("beam."): float(v) for path, v in values.items() if path.startswith("beam.")}
     of_layers = {
@@ -279,7 +279,7 @@ def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str
         return
     name, value = next(iter(section.items()))
     if other := next((name for name in values if name in PROPERTY_UNITS), None):
-        bound = f"beam.{other} does not go together with it, as it follows from the section"
+        bound = f"beam.{other} follows from the section, and cannot be given together with its numbers"
         remedy = f"leave one of them out, or give {SCALE}{other}, which multiplies it"
         raise InvalidValue(f"beam.{name}", value, bound, remedy)
     if beam.section is None:

@@ -185,8 +185,9 @@ class PhysicsChoice:
     not_modelled : tuple of str
         Effects that this package does not model.
     beyond_models : float
-        Estimated relative error of all models of this package, where it is known: a part of each included
-        effect, from comparisons with solid bodies, and the strain by rotation.
+        Estimated relative error that no model of this package avoids, as far as it is known: a fraction of
+        the size of each included effect, found by comparisons with solid bodies, plus the change by the axial
+        strain due to rotation.
 
     Examples
     --------
@@ -293,7 +294,7 @@ class OfChosenPhysics(Result):
 # Physics that tip loads and springs require ------------------------------------------------------------
 
 ROOT_SPRINGS = "root_stiffness", "second_root_stiffness"
-_ALONG = 1e-12  # part of the load out of the plane of bending that counts as rounding error
+_ALONG = 1e-12  # fraction of the load out of the plane of bending that counts as rounding error
 # Largest spring stiffness at the root, divided by EI/L: rounding hides the rotation of a stiffer one.
 _STIFFEST = 1e16
 # Largest spring stiffness along the beam, divided by EI/L^3: above, rounding hides the spring's deflection.

@@ -124,8 +124,8 @@ class PointMass:
     Parameters
     ----------
     position : float
-        Distance from the root along the beam [m], above 0 and at most the length: one at the tip is a
-        `TipMass` without offset and inertia.
+        Distance from the root along the beam [m], above 0 and at most the length: a mass at the tip counts
+        as a `TipMass` without offset and inertia.
     mass : float
         Mass [kg].
 
@@ -148,7 +148,7 @@ class PointMass:
     mass: Annotated[float, Described("kg", "m_k", "mass", least=0)]
 
     def __post_init__(self) -> None:
-        remedy = "it is the distance from the root, where a mass cannot move"
+        remedy = "it is the distance from the root, where a mass would not move"
         position = checks.positive("point_mass.position", self.position, "m", remedy)
         checks.set_fields(self, position=position, mass=checks.amount("point_mass.mass", self.mass, "kg"))
 
@@ -191,7 +191,7 @@ class PointSpring:
 
     def __post_init__(self) -> None:
         checks.one_of("point_spring.direction", self.direction, get_args(Direction))
-        remedy = "it is the distance from the root, which cannot move"
+        remedy = "it is the distance from the root, where a spring would not be deflected"
         position = checks.positive("point_spring.position", self.position, "m", remedy)
         stiffness = checks.amount("point_spring.stiffness", self.stiffness, "N/m")
         checks.set_fields(self, position=position, stiffness=stiffness)

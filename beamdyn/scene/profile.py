@@ -38,7 +38,7 @@ class Table:
     Parameters
     ----------
     stations : sequence of float
-        Positions x/L, from 0 to 1, ascending; a station given twice is a jump.
+        Positions x/L, from 0 to 1, ascending; if a station is given twice, the property jumps there.
     values : sequence of float
         Values of the property at the stations [SI units].
 
@@ -180,7 +180,7 @@ class Profile(FieldsOnly):
 
 
 def _of_series(ends: tuple[float, ...], series: np.ndarray) -> Profile:
-    """Build the piecewise polynomial of Legendre coefficients that are given in a column for each segment."""
+    """Build a piecewise polynomial from Legendre coefficients, one column for each segment."""
     profile = Profile(ends, tuple(map(tuple, series.T.tolist())))
     profile.__dict__["series"] = series  # stores the known series as the cached property
     return profile
@@ -342,13 +342,13 @@ def _without_rounding(x: np.ndarray) -> np.ndarray:
 
 
 def _check_stations(name: str, x: np.ndarray, values: int) -> None:
-    """Check that stations ascend from 0 to 1, one for each value; a repeated station is a jump."""
+    """Check that stations ascend from 0 to 1, one for each value; a station may occur twice, for a jump."""
 
     def refuse_station(k: int, bound: str) -> None:
         raise InvalidValue(f"{name}[{k}]", float(x[k]), bound, Words("give fractions x/L", _OR_LENGTHS))
 
     if len(x) != values or len(x) < 2:
-        bound = f"{len(x)} stations and {values} values: give as many of each, at least two"
+        bound = f"{len(x)} stations and {values} values: give one value for each station, and at least two"
         raise InvalidValue(name, x.tolist(), bound)
     if x[0] != 0:
         refuse_station(0, "the first station must be 0, the root")
@@ -358,9 +358,9 @@ def _check_stations(name: str, x: np.ndarray, values: int) -> None:
         tip = Named("1, the tip", "the tip, at 1 or the beam's length")
         refuse_station(len(x) - 1, Words("the last station must be ", tip))
     if x[1] == 0 or x[-2] == 1 or np.any(x[2:] == x[:-2]):
-        bound = "a station given twice is a jump and stands between others"
+        bound = "a station may be given twice, for a jump there, except the first and the last one"
         raise InvalidValue(
-            name, x.tolist(), bound, "give no station three times, nor the first or last twice"
+            name, x.tolist(), bound, "give no station three times, nor the first or the last twice"
         )
 
 

@@ -161,7 +161,7 @@ def draw(scene: Scene) -> RotorDrawing:
 
 
 def _paper(rows: list[list[Drawing]]) -> Paper:
-    """Choose the size of the paper, on which the section is lower than the rotor."""
+    """Choose the size of the paper, with a fixed height for the view of the section in the last row."""
     made = Paper.of(rows)
     return Paper(made.width, (*made.heights[:-1], _SECTION))
 

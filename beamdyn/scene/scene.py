@@ -66,7 +66,7 @@ class Scene(OneLine):
         Units in which results are shown, such as {"speed": "rpm", "length": "mm"}; all numbers are SI
         nevertheless.  A scene from a file has those of the file.
     tip_load : TipLoad
-        Force and moment at the tip, which a scene with large deflection takes.
+        Force and moment at the tip; they need `large_deflection` in the physics.
 
     Raises
     ------
@@ -301,18 +301,18 @@ def _check_large_deflection(scene: Scene) -> None:
             bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
             raise InvalidValue(f"mount.{name}", spring, bound, "give a soft one", "N m/rad")
         if spring < math.inf and scene.beam.matrices is not None:
-            bound = "the root of a beam with matrices of its sections is clamped"
+            bound = "a beam given by matrices of its sections needs a clamped root"
             raise InvalidValue(f"mount.{name}", spring, bound, "leave it out", "N m/rad")
     if scene.beam.electrodes is not None and scene.beam.electrodes.resistance:
-        bound = "with physics.large_deflection the layers of a harvester are modelled short-circuited alone"
+        bound = "with physics.large_deflection the layers of a harvester must be short-circuited, R = 0"
         remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("harvester.resistance", scene.beam.electrodes.resistance, bound, remedy, "ohm")
     if scene.beam.point_springs:
-        bound = "with physics.large_deflection these are not modelled: they would keep their direction"
+        bound = "with physics.large_deflection point springs are not modelled: they keep their direction"
         remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     if scene.damping.tip_damper:
-        bound = "with physics.large_deflection it is not modelled: the tip also moves along the beam"
+        bound = "with physics.large_deflection, the damper is not modelled: the tip also moves along the beam"
         remedy = f"give damping.ratios, or {how_without_large_deflection(scene.beam)}"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
 
@@ -439,7 +439,7 @@ def _with_constants(beam: Beam, physics: Physics) -> Beam:
 
 
 def _with_corners(beam: Beam, planes: int) -> Profile:
-    """Add breakpoints near the root to the mass per length, where stresses in a plate's corners vary."""
+    """Return the mass per length with breakpoints that resolve stresses in a plate's corners at the root."""
     assert beam.strip is not None
     part = float(beam.strip.width(np.zeros(1))[0]) / beam.length
     places = tuple(part * each for each in _CORNERS)
@@ -468,7 +468,7 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
 
 @dataclass(frozen=True, kw_only=True)
 class SceneResult(Result):
-    """Base of results of one scene; their own fields come first.
+    """Base class of results for one scene; fields of subclasses come before the fields listed here.
 
     Attributes
     ----------

@@ -3,7 +3,7 @@
 Rows and columns belong to the forces and moments (F1, F2, F3, M1, M2, M3) about the axis of the beam: 1
 along it, 2 in the direction of bending and 3 across, in the axes of the section, which the twist turns.  The
 stiffness matrix times the stretch, the two shear strains, the twist rate and the curvatures about 2 and 3
-gives them; the mass matrix, per length, times the accelerations gives the inertial forces and moments.
+gives these forces and moments; the mass matrix, per length, times the accelerations gives the inertial ones.
 
 In shapes of arrays, n is the number of sections.
 """
@@ -29,8 +29,8 @@ MOST_ASYMMETRY = 1e-4  # largest accepted asymmetry of a matrix scaled to a diag
 # Entries in the rows of a matrix are named as faulty if the components of these rows in the eigenvector of
 # the smallest eigenvalue exceed this fraction of the largest component.
 _PART = 0.1
-# Largest accepted difference of a mass matrix from that of a rigid section, over the root of the product of
-# the two diagonal entries in its row and column.
+# Largest accepted difference of an entry of a mass matrix from that of a rigid section, divided by the square
+# root of the product of the two diagonal entries in its row and column.
 MOST_STRANGENESS = 1e-4
 # Largest accepted difference of M44 from M55 + M66, over M44: tables with three digits differ by 2e-3.
 MOST_EXCESS = 5e-3
@@ -103,7 +103,7 @@ class SectionMatrices(FieldsOnly):
         Parameters
         ----------
         stations : array_like, shape (n,)
-            Positions x/L, from 0 to 1, ascending; a station given twice is a jump.
+            Positions x/L, from 0 to 1, ascending; if a station is given twice, the matrices jump there.
         stiffness, mass : array_like, shape (n, 6, 6)
             The matrices.
 
@@ -184,7 +184,7 @@ def _entries_at_fault(name: str, matrix: np.ndarray) -> str:
 
 
 def _scaled(matrices: np.ndarray) -> np.ndarray:
-    """Scale matrices (sections, 6, 6) to a diagonal of 1; rows with a diagonal that is not positive stay."""
+    """Scale matrices (sections, 6, 6) to a diagonal of 1; do not scale by a diagonal entry of 0 or less."""
     diagonal = np.einsum("nii->ni", matrices)
     roots = np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
     return matrices / (roots[:, :, None] * roots[:, None, :])
@@ -238,5 +238,8 @@ def strangeness(matrices: np.ndarray) -> np.ndarray:
 
 
 def polar_excess(matrices: np.ndarray) -> np.ndarray:
-    """Compute the relative difference of each mass matrix's M44 from M55 + M66, its value if flat."""
+    """Compute the relative difference of M44 of each mass matrix from M55 + M66.
+
+    Both are equal if all mass of the section lies in one plane across the beam.
+    """
     return np.abs(1 - (matrices[4, 4] + matrices[5, 5]) / matrices[3, 3])

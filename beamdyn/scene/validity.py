@@ -22,7 +22,7 @@ from beamdyn.common.words import Setting, Words, percent, told_from
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
-LARGE_DEFLECTION = 0.1  # fraction of the length beyond which a linear theory has errors of several percent
+LARGE_DEFLECTION = 0.1  # deflection divided by length, past which linear theory has errors of several percent
 LARGE_STRAIN = 0.01  # static axial strain beyond which the neglected stretch matters
 # Acceleration of gravity [m/s2]: a wheel that a road accelerates by more loses contact.
 STANDARD_GRAVITY = 9.81
@@ -184,8 +184,8 @@ def _at_speeds(speeds: np.ndarray | None, selected: np.ndarray) -> str:
 def list_speeds(speeds: np.ndarray, selected: np.ndarray) -> Words:
     """Format the selected speeds [rad/s], at least one: "20 to 35 rad/s and 50 rad/s".
 
-    Neighbours in ascending order form a range.  Of many ranges the first are named, then how many follow, up
-    to which speed.
+    Selected speeds that are neighbours in ascending order form a range.  If there are many ranges, the first
+    ones are named, then the number of the others and the last speed.
     """
     ascending = np.argsort(speeds, kind="stable")
     speeds, selected = speeds[ascending], selected[ascending]

@@ -92,7 +92,10 @@ class BestResistance(Harvest):
 
     @property
     def resistance_error(self) -> float:
-        """Estimated error [ohm]: relatively, twice the error of the power plus the search's tolerance."""
+        """Estimated error of the resistance [ohm].
+
+        The relative error is twice that of the power plus the tolerance of the search.
+        """
         return (_LIKE_POWER * float(self.total_error[0]) + FULL.tolerance) * self.resistance
 
     def say_resistance(self) -> str:

@@ -93,7 +93,7 @@ class Crossings(SceneResult, StatesModelError, Sequence[Crossing]):
     frequency : ndarray, shape (S, m)
         Natural frequencies of m modes [Hz], in the order at rest.
     order : int
-        Highest order of the excitation lines in the search.
+        Highest order of the excitation lines in the search, as in `resonance_speeds`.
     unlisted : int
         Number of crossings of the next order, which are weaker and not listed; those of still higher
         order are not counted.
@@ -159,9 +159,9 @@ class Crossings(SceneResult, StatesModelError, Sequence[Crossing]):
         if not self.may_peak:
             return Words(*weaker, ".")
         forced = (
-            "it is"
+            "this crossing is"
             if self.unlisted == 1
-            else f"{self.may_peak} of them {'is' if self.may_peak == 1 else 'are'}"
+            else f"{self.may_peak} of these crossings {'is' if self.may_peak == 1 else 'are'}"
         )
         return Words(*weaker, f": {forced} forced, where the steady response may have a peak.")
 

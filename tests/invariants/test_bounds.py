@@ -111,7 +111,7 @@ def test_undecided_stability_is_warned_of() -> None:
     found = frequency_bounds(HARVESTER, bd.critical_speed(HARVESTER))
     assert found.lower_squared[0] < 0 < found.upper_squared[0]
     assert np.isnan(found.lower[0])
-    assert "stable or unstable" in found.warnings[0]
+    assert "maybe unstable, because the bounds" in found.warnings[0]
 
 
 def test_a_bound_that_cannot_be_guaranteed_is_missing() -> None:

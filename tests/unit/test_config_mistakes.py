@@ -291,7 +291,7 @@ def test_physics_needs_a_property(physics, name):
 )
 def test_twist_needs_a_second_stiffness(twist, shown):
     said = only_mistake(changed("beam.twist", twist, BY_STIFFNESS))
-    assert said.startswith(f"beam.twist = {shown}: it turns two directions of bending, and needs second_b")
+    assert said.startswith(f"beam.twist = {shown}: twist turns two directions of bending: it needs second_b")
     assert said.endswith("; give beam.second_bending_stiffness")
 
 

@@ -217,12 +217,19 @@ def test_crossings_that_are_not_listed_are_counted(changes: dict, order: int) ->
     assert found.may_peak == sum(
         (c.kind == "forced") * s for s, each in ((1, more), (-1, found)) for c in each
     )
-    assert f"{found.may_peak} of them are forced, where the steady response may have a peak" in found.extent
+    assert (
+        f"{found.may_peak} of these crossings are forced, where the steady response may have a peak"
+        in found.extent
+    )
 
 
 @pytest.mark.parametrize(
     ("unlisted", "may_peak", "said"),
-    [(1, 1, "it is forced"), (3, 1, "1 of them is forced"), (3, 2, "2 of them are forced")],
+    [
+        (1, 1, "this crossing is forced"),
+        (3, 1, "1 of these crossings is forced"),
+        (3, 2, "2 of these crossings are forced"),
+    ],
 )
 def test_one_crossing_is_and_several_are_forced(unlisted: int, may_peak: int, said: str) -> None:
     found = replace(bd.resonance_speeds(ROLLING, 20.0), unlisted=unlisted, may_peak=may_peak)

@@ -276,7 +276,7 @@ BENT = replace(MOVING, physics=bd.Physics(large_deflection=True), mount=replace(
         ({"at": [0.1] * 3}, "twice for both sides"),
         ({"at": []}, "give 1 to"),
         ({"points": [(0.003, 0.0)]}, "points = 0.003 m: it lies outside the section"),
-        ({"points": [(0.0, 0.02)]}, "in the second direction the smallest one reaches 0.01 m"),
+        ({"points": [(0.0, 0.02)]}, "the smallest section reaches 0.01 m in the second direction"),
         ({"points": [0.001]}, "pairs"),
         ({"points": [(math.nan, 0.0)]}, "finite"),
         ({"youngs_modulus": -1.0}, "youngs_modulus"),

@@ -1,7 +1,7 @@
 """Continuation of the equilibria of a beam over a parameter, through turning points.
 
 A curve of solutions of r(q, p) = 0 is computed in steps of its arc length, measured by the beam's slope
-angles and by the parameter over its scale (Keller's pseudo-arclength method).
+angles and by the parameter divided by its scale (Keller's pseudo-arclength method).
 
 In shapes of arrays, n counts coordinates, and k positions along the beam or points of the curve.
 """
@@ -127,7 +127,7 @@ class Point:
     q_rate : ndarray, shape (n,)
         Change of the coordinates per arc length.
     p_rate : float
-        Change of the parameter, over its scale, per arc length.
+        Change of the parameter, divided by its scale, per arc length.
     """
 
     q: np.ndarray
@@ -168,7 +168,7 @@ def follow(
     start : Point
         A point of the curve.
     longest : float
-        Longest step, as a change of the slope angles [rad], or of the parameter over its value.
+        Longest step, as a change of the slope angles [rad] or as a relative change of the parameter.
     easy : int
         Number of Newton iterations in a step up to which the next step is longer.
     goal : float
@@ -209,8 +209,8 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
     Raises
     ------
     NotConverged
-        If the curve ends or turns back before; the exception's arguments are the reason and the parameter
-        there.
+        If the curve ends or turns back before it has reached all of them; the exception's arguments are the
+        reason and the parameter at which this happens.
     """
     found, before, towards, why = [], start, np.sign(start.p_rate), "could not be followed beyond"
     step = (goals[-1] - start.p) / (start.p_rate * load.scale)
@@ -327,7 +327,8 @@ def _newton(load: Loading, q: np.ndarray, p: float, point: Point | None) -> tupl
         # Convergence is at least linear: the next change is at most size**2 / last.
         ends = size < _CONVERGED or (size < _STALLED and size > last / 4)
         if ends or size**2 < _CONVERGED * last:
-            return q, p, iteration + (not ends)  # with the omitted one: it decides on step sizes
+            # Count an iteration that is predicted to converge but omitted: step sizes depend on the number.
+            return q, p, iteration + (not ends)
         last = size
     raise NotConverged
 
@@ -340,7 +341,7 @@ def _bordered(load: Loading, q: np.ndarray, p: float, point: Point) -> np.ndarra
 
 
 def _metric(load: Loading, q: np.ndarray, p: float) -> float:
-    """Compute the arc length of a change: root mean square of angles, and the scaled parameter."""
+    """Compute the arc length of a change from the root mean square of the angles and the scaled parameter."""
     return float(np.sqrt(np.mean((q @ load.angles) ** 2) + p**2))
 
 

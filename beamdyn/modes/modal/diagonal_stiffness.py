@@ -111,7 +111,7 @@ def _solve_largest(A: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def above_rounding(mu: np.ndarray) -> np.ndarray:
-    """Raise eigenvalues, descending, to at least half their rounding error: none is negative."""
+    """Raise descending eigenvalues to at least half their rounding error, so that none is negative."""
     return np.maximum(mu, _FORWARD / 2 * mu[..., :1])
 
 

@@ -37,7 +37,7 @@ _MOST_IN_ALL = 1000
 # Largest number of segments with which polynomials on each segment need fewer functions than bending moments
 # that are polynomials along the whole beam.
 _FEW_SEGMENTS = 6
-_MANY_ON_EACH = 2  # number of modes per segment above which polynomials need fewer functions
+_MANY_ON_EACH = 2  # modes per segment above which polynomials on segments need fewer functions than moments
 # Number of functions of the basis "moments" in each direction, minus the number of modes: a constant, the
 # number added per digit of accuracy (both found on published blades), and the smallest sum of the two.  With
 # fewer functions, the stated error of a mode may be too small.  Twisted sections need fewer, because a moment
@@ -46,7 +46,7 @@ _IN_STRAIGHT, _IN_TWISTED = (6, 3.0, 13), (-1, 3.0, 10)
 # Smallest number of elements on a segment: enough for a mesh with a quarter of them, the coarsest of three;
 # and on a segment with a boundary layer: enough for a mesh with half of them to resolve the layer.
 _ON_EACH, _ON_LAYERS = 4, 8
-_SHORT = 0.02  # segment length x/L below which elements of a quarter of it have large rounding errors
+_SHORT = 0.02  # segment length x/L below which its quarters, as elements, would have large rounding errors
 _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose the length of boundary layers
 # Largest ratio of all further changes of a critical speed to its change by the next finer model.
 _ALL_FURTHER = 2.0
@@ -192,7 +192,10 @@ def _choose(
 
 
 def _refine_until_buckled(model: Model, speed: float) -> Model:
-    """Refine a model while its straight beam buckles above a speed [rad/s], but finer ones perhaps below."""
+    """Refine a model until its critical speed is at most `speed` [rad/s], or can no longer fall to it.
+
+    The critical speed is that of the straight beam; it falls as the model is refined.
+    """
 
     def finer(model: Model) -> Model | None:
         refined = refine_model(model)
@@ -343,7 +346,7 @@ def check_discretization(discretization: object) -> None:
 # Length of a boundary layer in decay lengths: this number, minus half the logarithm of the allowed relative
 # error of an eigenvalue.
 _LENGTHS = 5.0
-# Longest boundary layers, over the length, that get separate functions.
+# Longest boundary layers at the root and at the tip, divided by the length, that get separate functions.
 _SHORT_AT_ROOT, _SHORT_AT_TIP = 0.1, 0.4
 _SHORTEST = 1e-4  # length of the shortest boundary layer, over the length of the beam
 # Breakpoints x/L added near the tip to resolve a boundary layer when the speed, on which its length depends,

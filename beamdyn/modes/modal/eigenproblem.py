@@ -164,7 +164,7 @@ class Solver(Eigensolver):
 
     @cached_property
     def _diagonal(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Coordinates with diagonal stiffness: its growth with squared speed, their basis and mass matrix."""
+        """Growth of a diagonal stiffness per squared speed; basis and mass matrix of its coordinates."""
         L = self._at_rest
         K2, M = (_symmetric(transformed(L, A)) for A in (self.pencil.K2, self.pencil.M))
         growth, Q = np.linalg.eigh(K2)
@@ -214,7 +214,7 @@ class Solver(Eigensolver):
         return found
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
-        """Compute the `count` lowest modes; of conservative equations at all speeds at once."""
+        """Compute the `count` lowest modes at each speed; if conservative, for all speeds at once."""
         with explained():
             if not self.pencil.conservative:
                 modes = [self._solve_coupled(speed, count) for speed in speeds]

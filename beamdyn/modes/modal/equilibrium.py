@@ -24,8 +24,8 @@ Branch = Literal["straight", "bent"]
 _SAME = 1e-6  # difference of slope angles [rad] below which two equilibria count as the same
 # Largest difference of slope angles [rad] between an equilibrium and that of a coarser discretization.
 _NEAR = 0.01
-_PUSH = 0.05  # transverse acceleration, over speed^2 length, that pushes the beam to the other branch
-_FASTEST = 100.0  # highest speed at which equilibria are computed, over the first angular frequency at rest
+_PUSH = 0.05  # transverse acceleration, divided by speed^2 length, that pushes the beam to the other branch
+_FASTEST = 100.0  # highest speed of equilibria, divided by the first angular frequency at rest
 # Ratio of speed to first angular frequency at rest up to which a loss of stability is searched: at higher
 # speeds, boundary layers require short steps.
 _SOUGHT = 30.0
@@ -36,7 +36,10 @@ _COILED = 2 * math.pi  # angle of a section [rad] above which no loss of stabili
 
 
 def load_by_rotation(elastica: RotatingBeam, scale: float) -> Loading:
-    """Build the load by rotation, whose parameter is the squared speed [rad2/s2], of magnitude `scale`."""
+    """Build the load by rotation, which grows with the squared speed as its parameter p [rad2/s2].
+
+    `scale` is the change of p that counts like an angle of 1 rad in the arc length: see `Loading`.
+    """
     return Loading(elastica, elastica.turning, scale, {"unity": 1.0} if elastica.load else {})
 
 
@@ -125,7 +128,7 @@ def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
     """
     if load.elastica.load is not None:
         said = "with a load at the tip, no other branch is searched; "
-        raise NoEquilibrium(f"{said}a small transverse force leads to one, if there is one")
+        raise NoEquilibrium(f"{said}a small transverse force leads to it, if it exists")
     transverse, squared = load.growing.get("root_transverse", 0.0), speed**2
     natural = transverse or natural
     push = -2 * natural - math.copysign(_PUSH * load.elastica.beam.stations.length, natural + 0.0)
@@ -245,9 +248,10 @@ class DeflectedSolver(Solver):
         return np.array([self._found[abs(v)] for v in speeds])
 
     def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> None:
-        """Store the equilibria that are close to those of another discretization, and as stable.
+        """Store the equilibria that are close to those of the discretization of `guide`.
 
-        Speeds at which there is none are left out.
+        A speed is left out if there is no such equilibrium, or if its stiffness has a different number of
+        negative eigenvalues than that of `guide`.
         """
         for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
             near = self.elastica.nearest(guide.elastica, of_guide)

@@ -20,28 +20,31 @@ from beamdyn.scene.scene import Scene
 
 UNRESOLVED = 0.3  # relative error above which a comparison of two models gives no estimate
 # Ratio of the difference between successive meshes to the previous difference: the smallest that is used, for
-# an order of convergence above 2; the one assumed if it is unknown; the largest.
+# an order of convergence above 2; the one assumed if it is unknown; the largest for which an error is
+# estimated.
 LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 _HALVED = 0.7  # ratio of the sizes of two meshes above which they do not show the order of convergence
 _OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding error of stiffness entries
 # Ratio of the difference between the two coarser meshes to the smallest stated error, as the difference
 # between the two finer ones may be small by chance.
 _LEAST_OF_BEFORE = 64.0
-# Largest ratio of differences that is transferred from a lower mode to a higher one, as the same steep change
-# of properties affects both.
+# Largest ratio of the differences between successive meshes that a higher mode takes over from a lower one.
+# It does so because a steep change of properties slows the convergence of both.
 _SHARED = 0.75
 # Ratio of the difference of two meshes to their rounding errors, below which it may be rounding alone.
 _OF_NOISE = 4.0
-# Fractions that count as the error of a mode: of its own distance from the coarser basis, and of the largest
-# distance of all modes; then the relative distance above which margins for slow convergence are added.  The
-# values are for a beam with one segment, with several (whose functions converge at different rates), and for
-# irregular convergence.
+# How the error of a mode follows from its distance to the coarser basis.  The first two numbers are the
+# fractions of its own distance, and of the largest distance of all modes, that count as error; the third is
+# the relative distance above which margins for slow convergence are added.  There are such numbers for a beam
+# with one segment, for one with several (whose functions converge at different rates), and for irregular
+# convergence.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-# The same three numbers for a coarser basis with one function less, which may change a mode less than the
-# next function does: convergence always counts as slow.
+# The three numbers, with the meanings given for `REGULAR`, for a coarser basis with one function less.  That
+# function may change a mode less than the next one does, so that convergence always counts as slow.
 _BY_ONE = 1.0, 0.01, 0.0
-# Number of functions across plates up to which the margin was measured (convergence slows down above it), and
-# the fraction of the largest distance of all modes that counts as error.
+# Number of functions across plates up to which the margin `BASES_OF_PLATES` was measured (with more
+# functions, convergence slows down), and the fraction of the largest distance of all modes that counts as
+# error.
 _ACROSS_MEASURED, _OTHERS_OF_PLATES = 12, 0.01
 # Fraction of the lowest squared frequency at rest above which a squared frequency's error is relative to
 # itself.
@@ -64,7 +67,7 @@ class EstimatedModes:
         Modes of `model`.
     error : ndarray, shape (speeds, modes)
         Estimated relative error of the eigenvalues: truncation and rounding error; inf where unresolved,
-        where the coarser model has no such mode, and where the model does not exceed the coarser one.
+        where the coarser model has no such mode, and where it has no fewer functions than the model.
     """
 
     model: Model
@@ -78,7 +81,7 @@ class EstimatedModes:
 
 
 def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> EstimatedModes:
-    """Solve a model, and estimate the errors of its eigenvalues by the coarser model.
+    """Solve a model, and estimate the errors of its eigenvalues by comparison with the coarser model.
 
     Parameters
     ----------
@@ -131,8 +134,8 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         rounding = ROUNDING_OF_TWO.factor * fine.rounding[:, :compared] + model.discretization.rounding
         error = truncation + rounding
         resolved = (half / size < UNRESOLVED) & (error < UNRESOLVED)  # this is False for nan, too
-    # A root without a spring may turn freely at rest, or if it lies on the axis: a frequency within rounding
-    # of 0 is then taken as 0.
+    # A root without a spring may turn freely: at rest or, if it lies on the axis of rotation, at any speed.
+    # A frequency within rounding of 0 is then taken as 0.
     if not s.all():
         free = 0.0 in mount.root_stiffnesses[: scene.physics.planes]
         neutral = (s == 0) & (free & ((speeds == 0) | (mount.radius == 0)))[:, None]
@@ -147,7 +150,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
 def _mesh_error(
     model: Model, fine: Eigen, squared: np.ndarray, distance: np.ndarray, before: np.ndarray
 ) -> np.ndarray:
-    """Estimate the relative truncation error of extrapolated squares by differences between meshes."""
+    """Estimate relative truncation errors of extrapolated squared eigenvalues, by comparison of meshes."""
     compared = squared.shape[1]
     noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
     K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
@@ -157,8 +160,8 @@ def _mesh_error(
     left = extrapolation_error(distance, before, noise, least)
     truncation = (left + noise) / (2 * np.abs(squared))
     # Elements usually resolve lower modes better, so no mode is given a smaller error than a lower mode.  A
-    # square below the lowest at rest has a large relative error only by its small size; its error counts
-    # relative to the lowest.
+    # squared frequency below the lowest one at rest has a large relative error only because it is small: its
+    # error counts relative to the lowest one at rest.
     size = np.abs(squared) / model.solver.lowest_at_rest
     known = (size > 0) & np.isfinite(truncation)
     of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
@@ -180,11 +183,13 @@ def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.n
 
 def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) -> np.ndarray:
     """Estimate the relative truncation error of a model by `_ritz_error`, with the model's parameters."""
-    # At rest, the first mode's Rayleigh quotient is an upper bound of the lowest square.
+    # The Rayleigh quotient of the first mode, with the matrices at rest, is an upper bound of the lowest
+    # squared frequency at rest.
     stiffness, mass = model.solver.energies_at_rest(fine.vector[:, :, 0])
     bound = (stiffness / mass).min() + model.equations.shift
-    # Errors of squares below the lowest square at rest are relative to it.  The lowest square
-    # need not be computed if the largest relative distance is not that of a square below its bound.
+    # The error of a squared frequency below the lowest one at rest is relative to the latter.  The lowest one
+    # at rest need not be computed unless a squared frequency below its bound has the largest relative
+    # distance.
     if is_needed := size.min() < _ABOVE * bound:
         relative, below = half / size, size < bound
         of_below, of_others = (np.where(each, relative, 0.0).max(axis=1) for each in (below, ~below))
@@ -212,7 +217,7 @@ def extrapolation_error(
     noise : ndarray, shape (..., modes)
         Rounding error of the differences.
     least : float
-        Smallest ratio of the two that is used; it is larger if segments converge at different rates.
+        Smallest ratio of the two differences that is used; larger if segments converge at different rates.
 
     Returns
     -------
@@ -304,7 +309,7 @@ def _root(squared: np.ndarray, s: np.ndarray) -> np.ndarray:
 
 
 def _may_be_passed(squared: np.ndarray, distance: np.ndarray, resolved: np.ndarray) -> np.ndarray:
-    """Return for each mode and speed whether the exact value of an unresolved higher mode may be lower."""
+    """Return for each mode and speed whether an unresolved higher mode may have a lower exact frequency."""
     reach = np.where(resolved, np.inf, -np.real(squared) - np.abs(distance))
     lowest = np.minimum.accumulate(reach[:, ::-1], axis=1)[:, ::-1]
     return -np.real(squared) > lowest

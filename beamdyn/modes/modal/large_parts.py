@@ -1,6 +1,6 @@
-"""Eigensolver of large parts of a model: a few modes of many coordinates.
+"""Eigensolver for the few lowest modes of many coupled coordinates, a large block of a model's equations.
 
-They are found by Lanczos iteration on the inverse problem (by Arnoldi iteration with damping or Coriolis
+The modes are found by Lanczos iteration on the inverse problem (by Arnoldi iteration with damping or Coriolis
 forces), with factorizations of the stiffness at each speed, in place of all eigenvalues of full matrices.
 
 In shapes of arrays, n counts coordinates, and k modes.

@@ -140,7 +140,7 @@ class StackedSolver:
         return squared
 
     def damped(self, speeds: np.ndarray, ratio: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """Compute eigenvalues and rounding errors, for one damping ratio per design of the modes at rest."""
+        """Compute eigenvalues and rounding errors; each design has one damping ratio of all modes at rest."""
         design, spin = _rows(speeds)
         # Unit of time in which frequencies are of order 1.
         time = np.sqrt(1 / self.lowest_at_rest)[design, None, None]

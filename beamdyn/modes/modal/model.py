@@ -56,7 +56,7 @@ class Model(FieldsOnly):
     discretization: Discretization
 
     def of(self, scene: Scene) -> Model:
-        """Model this beam and discretization with physics, motion and damping of another scene."""
+        """Return a model of this beam, with this discretization, for all other data of another scene."""
         return Model(replace(scene, beam=self.scene.beam), self.discretization)
 
     @cached_property
@@ -66,7 +66,7 @@ class Model(FieldsOnly):
 
     def over(self, spaces: Spaces | None = None) -> Equations:
         """Build the equations of motion of the straight beam, in given functions or the discretization's."""
-        if self.scene.chooses_physics:  # `Scene` does not check physics "auto" for a curved axis
+        if self.scene.chooses_physics:  # `Scene` skips this check for physics "auto"
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
@@ -263,7 +263,7 @@ def bends(model: Model) -> bool:
 
 FEWEST_MODES = 2  # number of modes of the first basis, unless a number is given
 SPEED_SAMPLES = 2001  # number of times at which a motion's slowest and fastest speed are searched
-_MOST_MODES = 60  # largest number of modes: with more, the fastest modes need too small steps
+_MOST_MODES = 60  # largest number of modes: with more, the highest ones need too small time steps
 # Ratio of a pivot of the mass matrix to the largest pivot, below which it is 0 within rounding.
 _MASSLESS = 1e-14
 _DEPENDENT = 1e-10  # relative singular value below which mode shapes are linearly dependent
@@ -298,7 +298,7 @@ class ModalBasis:
         return self.speeds == (0.0,)
 
     def refined(self) -> ModalBasis | None:
-        """Return a basis with half as many modes more, at least two; None if these are too many."""
+        """Return a basis with 1.5 times as many modes, at least two more; None if these are too many."""
         assert self.modes is not None
         modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None

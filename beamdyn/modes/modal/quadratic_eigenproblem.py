@@ -49,7 +49,8 @@ def solve_first_order(M: np.ndarray, C: np.ndarray, K: np.ndarray) -> tuple[np.n
     s, y = s[finite], y[:, finite]
     least = _EPS * np.abs(s).max()
     none = np.flatnonzero(np.abs(s) < least)
-    s[none] = 1j * least * (-1.0) ** np.arange(len(none))  # replaces zeros by conjugate pairs
+    # 1/s is infinite for s = 0: such pairs of eigenvalues are replaced by very small conjugate pairs.
+    s[none] = 1j * least * (-1.0) ** np.arange(len(none))
     return 1 / s, y
 
 

@@ -1,6 +1,6 @@
 """Eigensolvers of whole models: with uncoupled blocks, with many coordinates, and for many speeds.
 
-The equations decide which eigensolver serves, part by part where parts are uncoupled, such as two planes.
+The eigensolver is chosen by the equations, separately for each uncoupled block, such as one of two planes.
 
 Modes over many speeds are interpolated between those at a few.  Without damping, squared frequencies are
 smooth functions of the speed (without gyroscopic terms: of the squared speed), and so are the modes, except
@@ -38,7 +38,7 @@ def solver_of(equations: Equations, coordinates: np.ndarray | None = None) -> Ei
 
 
 def solver_of_pencil(pencil: SteadyPencil) -> Eigensolver:
-    """Choose an eigensolver of equations at steady speed that are solved together."""
+    """Choose an eigensolver for equations at steady speed that form one coupled block."""
     if len(pencil.M) <= LARGE:
         return Solver(pencil)
     # Imported here, because sparse matrices are slow to import, and few models are so large.
@@ -102,7 +102,7 @@ class UncoupledSolver(Eigensolver):
 
     @property
     def critical_rounding(self) -> float:
-        """Relative rounding error of the critical speed, which is that of the softest block."""
+        """Relative rounding error of the critical speed, from the block with the lowest critical speed."""
         return max(self.solvers, key=lambda solver: solver.softening).critical_rounding
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
@@ -149,11 +149,13 @@ def _order(eigenvalue: np.ndarray) -> np.ndarray:
 
 _FEW = 160  # largest number of speeds that are solved individually
 _INTERVALS = 8, 16, 32  # numbers of intervals between Chebyshev points of the speed, tried in turn
-# The last third of a series' coefficients; their size shows whether the series converges fast enough.
+# The last 1/3 of the coefficients of a Chebyshev series is checked: they are small if the series converges
+# fast enough.
 _HIGHEST = 3
-# Interpolation error of squared frequencies in addition to rounding; the stated error includes it.
+# Allowed interpolation error of squared frequencies in addition to rounding; the stated error includes it.
 _MISFIT = 1e-12
-# Interpolation error of modes over their largest coordinate; the modes only serve to be followed over speed.
+# Allowed interpolation error of modes, divided by their largest coordinate; interpolated modes are used only
+# to follow the modes over speed.
 _MISFIT_OF_MODES = 1e-7
 _LEBESGUE = 3.0  # growth of rounding errors by interpolation: the Lebesgue constant of 17 to 33 points
 
@@ -297,7 +299,8 @@ def track(vectors: np.ndarray, mass: np.ndarray) -> tuple[np.ndarray, np.ndarray
     mac /= squares[:-1, :, None] * squares[1:, None, :]
     S, _, k = vectors.shape
     order, confidence = np.tile(np.arange(k), (S, 1)), np.ones((S, k))
-    successor = mac.argmax(axis=2)  # index at the next speed; the sum of MACs is largest
+    # Index of each mode at the next speed.  If this is no permutation, the one with the largest sum of MACs.
+    successor = mac.argmax(axis=2)
     unique = (np.sort(successor, axis=1) == np.arange(k)).all(axis=1)
     for s in np.flatnonzero(~unique):
         successor[s] = assign(-mac[s])

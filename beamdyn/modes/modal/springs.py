@@ -15,16 +15,17 @@ from beamdyn.common.numerics import solve_lower
 from beamdyn.equations.equations_of_motion import BACKWARD, ROUNDING_SIZE, SteadyPencil
 
 _EPS = np.finfo(float).eps
-_LOW = 0.1  # ratio of squared frequency to shift below which the subtraction would lose digits
+_LOW = 0.1  # ratio of squared frequency to shift below which subtracting the shift would lose digits
 _GRADED = 1e-6  # smallest eigenvalue of a well-conditioned stiffness that is scaled to unit diagonal
 # Smallest eigenvalue of a stiffness at rest, scaled to unit diagonal, that has correct digits.
 _GRADED_AT_REST = 1e-12
 # Ratio of a rotation's damping rate to the clamped beam's frequency below which the rotation is undamped.
 _UNDAMPED = 1e-6
-# Ratio of the smallest squared speed that is tried to that at which rotation affects the stiffness.
+# Ratio of the smallest squared speed that is tried to the squared speed at which rotation affects the
+# stiffness.
 _SMALLEST_TRIAL = 1e-12
-# Part of an eigenvalue, real or imaginary, over its magnitude, below which it is 0: rounding splits a double
-# root by the square root of the rounding error.
+# Ratio of the real or imaginary part of an eigenvalue to its magnitude, below which the part counts as 0:
+# rounding splits a double root by the square root of the rounding error.
 SPLIT_ROOT = 1e-8
 # Ratio of a squared frequency to the squared speed below which the beam turns freely, within rounding.
 _NEUTRAL = 1e-12

@@ -180,9 +180,9 @@ def can_add(scene: Scene, effect: effects.Effect) -> bool:
 
 _MOST = 160  # largest number of coordinates of a model that suffices to estimate a change
 _APART = 1e-8  # relative distance kept from an eigenvalue, where the equations are singular
-_AT_CLAMP = 3  # number of functions along each segment, beyond that of modes, to resolve camber near a clamp
-# Number of functions across the width.  The error is 1 % of the change of camber by the clamp, and 0.1 % for
-# torsion.
+_AT_CLAMP = 3  # functions along each segment in addition to the modes, to resolve camber near a clamp
+# Number of functions across the width.  With these, the error is 1 % of the part of the change by camber that
+# is due to the clamp, and 0.1 % for torsion.
 _ACROSS = 4
 _STEPS = 8  # largest number of inverse iterations: one suffices unless the effect is large or modes are close
 # The iteration ends at a step of this size, relative to the change, or relative to the eigenvalue.
@@ -313,7 +313,7 @@ def shift_eigenvalues(pencil: SteadyPencil, speed: float, s: np.ndarray, v: np.n
         The eigenvalues [1/s]; nan if there is none.
     """
     M, C, K = pencil.M, pencil.C + speed * pencil.G, pencil.K0 + speed**2 * pencil.K2
-    scale = _scale(M, K)  # functions of high order have large entries
+    scale = _scale(M, K)  # functions of high order have large entries, which are scaled to 1
     M, C, K = (scale[:, None] * A * scale for A in (M, C, K))
     modes = (v / scale[:, None]).T
     with np.errstate(divide="ignore", invalid="ignore"):  # singular equations give nan
@@ -325,7 +325,8 @@ def _shift(M: np.ndarray, C: np.ndarray, K: np.ndarray, s: complex, x: np.ndarra
     """Find the eigenvalue nearest to s, starting from the mode x without the effect."""
     y, z, at = x.conj(), x, s
     for _ in range(_STEPS):
-        # One step of inverse iteration for left and right vectors; not finite if D is singular.
+        # One step of inverse iteration for left and right vectors, near the current eigenvalue; the result is
+        # not finite if the dynamic stiffness there is singular.
         near = at * (1 + _APART)
         derivative = 2 * near * M + C
         factors, pivots, _ = zgetrf(near * near * M + near * C + K, overwrite_a=True)

@@ -1,12 +1,12 @@
 """Automatic choice of the physics: the effects that a result needs in order to meet a tolerance.
 
 The size of an effect is the relative change that it causes.  Sizes are estimated for the plain beam, an
-Euler-Bernoulli beam that bends in one plane.  The
-largest effect is added, and the others are estimated again for the beam with it, until the sizes of the
-neglected effects, summed for each value of the result, are at most half the tolerance, as an estimate may be
-too low by a factor of two.  Effects below a tenth of the tolerance are not added.  Large deflection excludes
-camber, and in transients, where it is in one plane only, shear, stretch and a second plane; if it and an
-effect that it excludes are needed, the set with the smaller neglected effects is used.
+Euler-Bernoulli beam that bends in one plane.  The largest effect is added, and the others are estimated again
+for the beam with it, until the sizes of the neglected effects, summed for each value of the result, are at
+most half the tolerance, as an estimate may be too low by a factor of two.  Effects below a tenth of the
+tolerance are not added.  Large deflection excludes camber, and in transients, where it is in one plane only,
+shear, stretch and a second plane; if large deflection and an effect that it excludes are both needed, that
+set of effects is used whose neglected effects are smaller.
 """
 
 from __future__ import annotations
@@ -42,10 +42,10 @@ from beamdyn.scene.validity import refuse_bending_in_space
 NOTHING_BARRED: Mapping[str, str] = MappingProxyType({})
 PHYSICS_TOLERANCE = 1e-3  # allowed relative change by neglected effects, unless a tolerance is given
 _SMALL = 0.1  # fraction of the tolerance below which an effect is not added
-_SOLVED = 0.1  # fraction of the tolerance to which the modes changed by effects are computed
+_SOLVED = 0.1  # numerical error allowed in the modes with an added effect, as a fraction of the tolerance
 _MODES = 3  # number of modes by which the physics of a motion is chosen
 _SHORT = 0.2  # computing time [s] below which a result is computed twice, and the shorter time counts
-_ROUGH = 2.0  # largest relative change of a frequency by large deflection, over (deflection/length)^2
+_ROUGH = 2.0  # largest relative change of a frequency by large deflection, divided by (deflection/length)^2
 _BENDING = LARGE_DEFLECTION.name
 _NOTHING = "no mode vibrates and is stable"
 
@@ -291,7 +291,10 @@ class _Candidate:
 
     @property
     def beyond_models(self) -> float:
-        """Relative error that every model here has: errors of the included effects, and the axial strain."""
+        """Relative error that no model of this package avoids.
+
+        It is the sum of the uncertainties of the included effects and the change by the axial strain.
+        """
         missed = (NAMED[name].uncertainty * min(size, 1.0) for name, size in self.included.items())
         return sum(missed, self.strained)
 
@@ -382,9 +385,9 @@ def choose_by(
 
 
 def _grow(candidate: _Candidate, judge: Judge, tolerance: float, barred: Set[str]) -> _Candidate:
-    """Add effects, except those in `barred`, until the other addable ones are small in sum.
+    """Add effects, except those in `barred`, until those that could still be added are small.
 
-    Their sizes then sum to at most half the tolerance, or each is below a tenth of it.
+    Their sizes then sum to at most half the tolerance, or each is below a tenth of the tolerance.
     """
 
     def sizes(found: _Candidate) -> dict[str, float]:
@@ -450,7 +453,7 @@ def _cost(scene: Scene, solve: Solve) -> np.ndarray:
     start = perf_counter()
     size = solve(scene)
     time = perf_counter() - start
-    if time < _SHORT:  # other processes would distort short times
+    if time < _SHORT:  # other processes may prolong a short time: measure again, and take the shorter one
         solve(scene)
         time = min(time, perf_counter() - start - time)
     return np.array([time, size])

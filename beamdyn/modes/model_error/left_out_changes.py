@@ -46,7 +46,8 @@ from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, UnlistedM
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
-# Reasons why large deflection cannot be added, by the name of the field in the error raised.
+# Reasons why the change by large deflection is not known; those in `_REFUSED` are listed by the name of the
+# field in the error that is raised if large deflection is added.
 _TWO_PLANES = "not estimated for two planes, where modes may cross"
 _OF_BENDING = "computed only for bending modes"
 _HINGED = "a beam on a hinge has no unique equilibrium from which it could bend"
@@ -246,7 +247,9 @@ def left_out_of_critical_speed(model: Model, critical: float) -> LeftOutEffects:
 
     bent, reason = None, ""
     if not model.scene.physics.large_deflection:
-        does = bends(model)  # without transverse load, the straight beam is in equilibrium until it buckles
+        # If rotation does not bend the straight beam, it stays straight until it buckles, so that large
+        # deflection does not change its critical speed.
+        does = bends(model)
         bent, reason = np.array(np.nan if does else 0.0), _NO_CRITICAL_SPEED if does else ""
     return _gather(model.scene, base.scene, change, bent, reason)
 
@@ -305,7 +308,7 @@ def _gather(
 
 
 class SolvedValues(NamedTuple):
-    """Values of a result, nan where there is none, with the reason for that, and the assumptions made."""
+    """Values of a result, nan where they are not known, with the reason why, and the assumptions made."""
 
     values: np.ndarray
     reason: str = ""
@@ -372,7 +375,7 @@ def _bent_values(scene: Scene, without: SolvedValues, solve: Solve) -> SolvedVal
         return SolvedValues(unknown, _TWO_PLANES)
     try:
         straight, bent = _comparable(scene)
-        # An analysis may support large deflection in one plane only.
+        # This raises an error if the analysis supports large deflection in one plane only.
         within = solve(bent, LARGE_DEFLECTION.name)
     except InvalidValue as error:
         return SolvedValues(unknown, _REFUSED.get(error.field, str(error)))
@@ -399,10 +402,11 @@ def left_out_with_modes(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray
 
 
 def find_unlisted(model: Model, speeds: np.ndarray, eigenvalue: np.ndarray) -> Iterator[UnlistedMode]:
-    """Yield the modes that a model lacks below the highest that it lists at some speed.
+    """Yield modes of the real body that the model lacks, if they are below its highest listed mode.
 
-    A margin of 3 % above the highest allows for the accuracy of these modes.  The eigenvalues (speeds, modes)
-    are those listed at the speeds [rad/s].
+    A mode is yielded if this holds at one speed at least.  Its frequency is known to 3 %, so that it may
+    exceed that of the highest listed mode by this margin.  `eigenvalue` (speeds, modes) has the eigenvalues
+    [1/s] of the listed modes at the `speeds` [rad/s].
     """
     highest = _MARGIN * np.abs(eigenvalue).max(axis=1, initial=0.0)
     scene, spaces_of = without_large_deflection(model).scene, model.discretization.spaces

@@ -21,7 +21,8 @@ from beamdyn.scene.validity import list_speeds
 LARGE_MODEL_ERROR = 0.01  # relative change by neglected effects above which a warning is given
 _NEGLIGIBLE = 1e-9  # relative change below which the change may be a rounding error
 _LARGE = 1000.0  # frequency [Hz] above which frequencies are printed as whole numbers
-# Relative changes above which a factor is printed, and then in scientific notation.
+# Relative changes above which a change is printed as a factor, and above which this is in scientific
+# notation.
 _MANY_TIMES, _COUNTLESS = 10.0, 1e4
 
 
@@ -178,7 +179,7 @@ class LeftOutEffects:
         for name in sorted(known, key=lambda name: -np.nanmax(np.abs(known[name]))):
             change, notes = known[name], []
             if abs(_largest(change)) < _NEGLIGIBLE:
-                if name in self.not_known:  # listed as unknown instead: other values may be large
+                if name in self.not_known:  # not listed as small: changes of other values are unknown
                     continue
             else:
                 first = int(np.nanargmax(np.abs(change)))

@@ -92,8 +92,8 @@ class PulsatingRotation(Rotation):
 class ShakenCarrier(TurningMotion):
     """A carrier that turns while its centre is shaken: accelerations a cos(2 pi f t) along fixed directions.
 
-    Without rotation and at setting angle 0, the beam lies along n1: along it the shaking pulsates the axial
-    load, across it, along n2 or n3, it bends the beam.
+    Without rotation and at setting angle 0, the beam lies along n1.  Shaking along n1 then makes its axial
+    load pulsate, and shaking along n2 or n3 bends it.
 
     Parameters
     ----------

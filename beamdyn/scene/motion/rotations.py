@@ -149,7 +149,7 @@ class SpinUp(Rotation):
     duration : float
         Duration T of the spin-up [s].
     law : "smooth" or "linear"
-        Speed relative to the final speed, at x = t/T: x - sin(2 pi x)/(2 pi), or x.
+        Speed relative to the final speed, at x = t/T: x - sin(2 pi x)/(2 pi) if "smooth", x if "linear".
 
     Raises
     ------
@@ -195,7 +195,7 @@ class SpinUp(Rotation):
     def kinematics(self, t: np.ndarray) -> base.Kinematics:
         """Compute angle [rad], speed [rad/s] and acceleration [rad/s2] at times t [s]."""
         x = np.clip(t / self.duration, 0.0, 1.0)
-        # After the spin-up the value at its end is used for all times.
+        # If all times are after the spin-up, its law is evaluated only once, at its end.
         after_its_end = x.ndim and x.size and x.min() == 1
         angle, speed, acceleration = _LAWS[self.law](np.ones(1) if after_its_end else x)
         # Time at constant speed counts from the spin-up's end: the angle is continuous to the last digit.
