@@ -42,12 +42,11 @@ from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
 from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 
-# Ratio of the estimated error to the largest difference from responses with more modes, and number of these
-# responses: voltages of electrodes that end within the span converge irregularly, so that two responses may
-# agree by chance.
+# The estimated error is 2 times the largest difference from three responses with more modes.  With electrodes
+# that end within the span, voltages converge irregularly: two responses could agree by chance.
 _DISTANCE, _LARGER = 2.0, 3
 _RESONANT = 3  # number of modes whose resonances are listed
-_COMPARED = "with more modes, and without the harmonics that the last product with the stiffness adds"
+_COMPARED = "responses with more modes; fewer harmonics, without the last product with the varying stiffness"
 _POWER = "mean power [W]"
 
 
@@ -166,7 +165,7 @@ class Harvest(SceneResult, JudgedByRepeating):
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments for repeating the analysis for the model error, without numerical errors of the power."""
+        """Arguments with which the model error repeats the analysis: numerical errors are not estimated."""
         return {"compared": False}
 
     @property
@@ -278,7 +277,7 @@ def harvested(
     start = perf_counter()
     powers = _powers(scene, speeds, modes, tolerance, discretization, road, compared)
     resonances = _resonances(powers.scene, powers.speeds)
-    # The computing time includes that of the resonances.
+    # The provenance is built again, so that the computing time includes the search for resonances.
     provenance = Provenance.since(start, powers.provenance.method, _COMPARED)
     found = replace(powers, resonances=resonances, provenance=provenance)
     vars(found)["again"] = powers.again  # the model error repeats the powers only, without resonances
@@ -335,7 +334,10 @@ def _powers(
 
 
 def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
-    """Yield up to three requests, each with 1.5 times as many modes as the last, if the models exist."""
+    """Yield up to three requests, each with 1.5 times as many modes as the one before.
+
+    There are fewer if the discretization has no model with so many modes.
+    """
     for _ in range(_LARGER):
         if (finer := request.refined()) is None:
             return

@@ -41,8 +41,8 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     size = np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1)
     # Over the plane of both phases each line is a wave.  Waves with proportional harmonics are parallel;
     # others cross.  The strongest wave is constant along its crests, so that the waves that cross it decide
-    # where on a crest the maximum is, however weak they are.  So lines are also strong in comparison with
-    # these waves.
+    # where on a crest the maximum is, however weak they are.  So a line counts as strong if it is large in
+    # comparison with all lines, or only with the lines that cross the strongest one.
     j, k = harmonics.T
     crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
     others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)
@@ -127,9 +127,11 @@ def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, lo
 def _evaluate_size(
     a: np.ndarray, h: np.ndarray, phases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate the magnitude of sums of lines, with the sign of the first component, and its derivatives.
+    """Evaluate the signed magnitude of vectors that are sums of lines, and its derivatives.
 
-    The derivatives are the gradient and the second derivatives with respect to the two phases.
+    The magnitude has the sign of the vector's first component.  Return it with its gradient and second
+    derivatives with respect to the two phases: shapes (sums,), (sums, 2) and (sums, 2, 2).  The arguments are
+    those of `_evaluate`.
     """
     u, slope, curvature = _evaluate(a, h, phases)
     if u.shape[1] == 1:

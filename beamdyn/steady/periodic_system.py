@@ -81,7 +81,7 @@ class PeriodicSystem:
 
     @cached_property
     def without_stiffness(self) -> np.ndarray:
-        """Whether each coordinate has no stiffness: only its rate matters, as of a circuit's flux."""
+        """Whether each coordinate has no stiffness, so that only its rate acts, as with a circuit's flux."""
         stiff = self.mean[0].any(axis=(0, 1))
         for order, _, matrix in self.varying:
             stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))
@@ -199,7 +199,8 @@ def periodic_system(
     Parameters
     ----------
     equations : Equations, or sequence of them, length S
-        Equations of motion, or one set for each speed with the same terms, such as about equilibria.
+        Equations of motion for all speeds; or one set of equations for each speed, all with the same terms,
+        as for vibration about the equilibrium at each speed.
     motion : Motion or None
         A motion with `steady_acceleration` and `road_multiple`; None for rotation about a fixed centre.
     speeds : ndarray, shape (S,)
@@ -299,7 +300,7 @@ def expand_quantities(
         carrier = motion.steady_acceleration(omega, angle, road)
         root = equations.root(MotionSample(angle, omega, np.zeros(omega.shape), carrier))
         spectra = {name: _fourier_coefficients(getattr(root, name)) for name in used}
-        # Higher half of the harmonics that the grid of samples resolves.
+        # The grid is fine enough if the higher half of the harmonics that it resolves is 0.
         high = np.minimum(np.arange(N), N - np.arange(N)) > N // 4
         if not any(each[:, high].any() or each[:, :, high].any() for each in spectra.values()):
             return spectra

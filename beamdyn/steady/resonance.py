@@ -109,7 +109,7 @@ def resonance_speeds(
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = choose_physics(scene.undamped, [0.0, top], modes, tolerance)
     model = model_to_tolerance(scene, discretization, ends := np.array([0.0, top]), modes, tolerance)
-    sprung = discretization == "fem" and model.equations.shift  # elements may not resolve springs at the root
+    sprung = discretization == "fem" and model.equations.shift  # "fem" may not resolve root springs
     if sprung and not np.isfinite(solve_with_error(model, ends, modes).error).all():
         model = choose_model(scene, "ritz", ends, modes)
     critical = model.solver.critical_speed
@@ -158,7 +158,7 @@ def _check_stiffness(scene: Scene, critical: float) -> None:
         if spring
         else (
             "the beam is unstable at any speed, and does not vibrate",
-            "give the hinge a spring, or a beam that points outward",
+            "give the hinge a spring, or let the beam point outward",
         )
     )
     raise InvalidValue(f"mount.{name}", spring, bound, remedy, "N m/rad")

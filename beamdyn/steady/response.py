@@ -328,7 +328,7 @@ class ResponseRequest(FieldsOnly):
         vibrated = _largest(vibrating, harmonic, stable)
         about = " about the equilibrium at each speed" if scene.physics.large_deflection else ""
         method = f"{self.model.discretization}, {self.basis}{about}, {counted(len(used), 'harmonic')}"
-        estimated = "without the harmonics that the last product with the stiffness adds"
+        estimated = "fewer harmonics: without those that the last product with the varying stiffness adds"
         without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(
             speeds=speeds,
@@ -383,7 +383,10 @@ class ResponseRequest(FieldsOnly):
         return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
-        """Choose the first basis: modes at slowest and fastest speed; for large deflection, at each speed."""
+        """Return the smallest modal basis, with which the search for a sufficient basis starts.
+
+        It consists of modes at the slowest and at the fastest speed or, with large deflection, at each speed.
+        """
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)

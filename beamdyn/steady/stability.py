@@ -40,8 +40,8 @@ _ROUNDING = 1e-9  # largest real part, over the largest |eigenvalue|, that count
 _SETTLED = 1e-6
 _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
 _MOST_OUTSIDE = 0.1  # largest share of an accepted eigenvector in the outermost harmonics
-# Largest difference of growth rates that belong to copies of one exponent, relative to the change of the
-# growth rate by the resonance.
+# Eigenvalues of Hill's matrix are taken for copies of one exponent if their real parts differ by at most this
+# fraction of the change of the growth rate by the resonance.
 _SAME_RATE = 0.05
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
 _OFF = 1e-4  # offset of a shift from an eigenvalue, over the largest |eigenvalue|, to avoid a singular matrix
@@ -138,7 +138,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
     S, n = len(K), system.size
     K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
     w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
-    w = np.where(w == 0, 1.0, w)  # an uncoupled circuit's coordinate has no stiffness
+    w = np.where(w == 0, 1.0, w)  # no stiffness: coordinate of an uncoupled circuit
     A = np.zeros((S, 2 * n, 2 * n))
     A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
     periodic = []
@@ -219,7 +219,10 @@ class _MeanMotion:
         return reduce(np.add, parts)
 
     def gap(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute eigenvalue a minus b, plus i times the rate of harmonic h [1/s], for all modes a, b."""
+        """Compute sigma_a - sigma_b + i Omega_h [1/s] for all modes a, b and harmonics h.
+
+        The shape is (rates, modes, modes, harmonics); Omega_h is the angular frequency of harmonic h.
+        """
         omega = self.rates @ np.array(harmonics).T
         difference = self.sigma[:, :, None] - self.sigma[:, None, :]
         return difference[..., None] + 1j * omega[:, None, None, :]

@@ -104,7 +104,7 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
     equations = model.modal_equations(basis)
     tips = np.broadcast_to(equations.tips, (len(speeds), *equations.tips.shape))
     free = np.zeros(len(speeds), dtype=bool)
-    if shift := model.equations.shift:  # without a shift, the stiffness at rest is already positive definite
+    if shift := model.equations.shift:  # not 0 if the root is not clamped: the beam may turn freely
         lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
         free = lowest < _NO_FREQUENCY * np.sqrt(shift)
     return Vibration(

@@ -192,7 +192,10 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def axial(self) -> np.ndarray:
-        """Distance of the root from the rotation axis, against the direction of the beam [m]."""
+        """Component r cos(phi) of the root's distance from the axis of rotation, along the beam [m].
+
+        It is that of the reference beam that represents each design, and positive if the beam points inward.
+        """
         return self._radius * _cos(self._of_mount("setting_angle"), ROUNDED_ANGLE)
 
     @cached_property
@@ -247,7 +250,10 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def can_be_solved(self) -> bool:
-        """Whether the roots of all designs are clamped, or all on finite springs."""
+        """Whether all designs can be solved with the same coordinates.
+
+        This is so if each root spring is infinite (clamped) in all designs, or finite in all designs.
+        """
         return all(
             (v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values()
         )
@@ -378,7 +384,10 @@ def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> P
 
 @lru_cache(maxsize=8)
 def _forces(reference: Scene, nodes: Nodes) -> np.ndarray:
-    """Compute the axial strain of the node scenes over squared speed [s2], (T, points); nan if unknown."""
+    """Compute the axial strain by rotation, divided by squared speed [s2], at points along T node scenes.
+
+    The shape is (T, points).  The strain is nan if the axial stiffness of the beam is not known.
+    """
     scenes, beam = _node_scenes(reference, nodes), reference.beam
     if beam.axial_stiffness is None:
         return np.full((len(scenes), 1), np.nan)

@@ -67,8 +67,8 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
                 found = frequency_sensitivities(scene, *of_modes, tolerance=question.tolerance, **options)
     except ValueError as error:
         return KnownDerivatives(warnings=_said(error))
-    # Columns are in the order of the result: nan for missing crossings, the lowest crossing if there are
-    # several.
+    # Each number of the result gets its derivatives: nan if it is a crossing that was not found, and those of
+    # the crossing at the lowest speed if several have its label.
     none = np.full(len(found.inputs), np.nan)
     places = {name: k for k, name in reversed([*enumerate(found.answers)])}
     value, error = (
@@ -222,7 +222,10 @@ def spread(
 
 @dataclass
 class _StudyAnswers:
-    """Results of designs by studies, with the same columns as the first study."""
+    """Function that computes the results of designs by `study`.
+
+    The results of each call are arranged in columns as those of the first call.
+    """
 
     scene: Scene
     what: Any
@@ -335,7 +338,7 @@ def nominal_value(scene: Scene, name: str, speed: float) -> float:
 def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
     def convert(number: str, written: str) -> float:
         if written not in ("", unit):
-            bound = f"a text has percentages, or numbers in {unit or 'SI'}"
+            bound = f"a tolerance given as text has percentages, or numbers in {unit or 'SI'}"
             raise InvalidValue(name, text, bound, tolerances.without_unit(text, written, unit))
         return float(number)
 
@@ -343,7 +346,10 @@ def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
 
 
 def check_reach(scene: Scene, given: tolerances.SpreadInput) -> None:
-    """Raise an error if an end of a tolerance makes the scene with its other nominal values invalid."""
+    """Raise an error if the scene is invalid with an input at either end of its tolerance.
+
+    All other inputs keep their nominal values.
+    """
     for end in given.distribution.reach:
         try:
             with_numbers(scene, {given.name: end})

@@ -68,8 +68,9 @@ def study(
 
     For frequencies, critical speeds and resonance speeds of slender beams, all designs are represented by one
     reference beam with different tip bodies, springs, radii, angles and speeds, and solved in one basis by
-    batched eigenproblems.  All other results are computed design by design; those of motions over all speeds
-    at once.  Both ways give the results of single analyses, within the stated errors.
+    batched eigenproblems.  All other results are computed design by design; those that need a motion, such as
+    amplitudes, at all speeds of a design at once.  Both ways give the results of single analyses, within the
+    stated errors.
 
     Parameters
     ----------
@@ -335,7 +336,7 @@ class _Request:
             _check_scenes(self.question.scene, self.others)
         question = self.question
         if question.what == "crossings" and question.tolerance is not None and not self.is_similar:
-            bound = "crossings of these designs are computed by resonance_speeds without a tolerance"
+            bound = "these designs are solved one by one, and their crossings without a tolerance"
             raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:
@@ -387,7 +388,7 @@ class _Request:
         if not is_batched or not differ_in_numbers_only(scene, names - {"model.damping_ratio"}):
             return False
         if question.what == "crossings" and scene.physics.planes == 2:
-            return False  # each of the two planes has its own excitation lines
+            return False  # the lines of each plane excite only the modes of this plane
         return (
             question.refinement(self._reference).can_be_batched
             and all(self._similar(rows).can_be_solved for rows in self.others.chunks(_AT_ONCE))

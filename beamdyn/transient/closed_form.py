@@ -36,8 +36,8 @@ _CHECKED = 64  # number of times at which the equations are checked
 _NEGLIGIBLE = 1e-2  # fraction of the accuracy allowed for the sum of all neglected terms
 _RESOLVED = 12.0  # phase per step [rad] up to which the nodes of a step resolve an exponential
 _MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
-# A batch has the square of this number of steps: its exponentials are products of those at this number of
-# successive steps, and those at as many multiples of this number.
+# Exponentials are evaluated for batches of 32^2 steps: that at step 32 i + j is the product of those at the
+# steps 32 i and j, so that few exponential functions are called.
 _ROWS = 32
 
 

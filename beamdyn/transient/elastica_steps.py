@@ -124,9 +124,10 @@ def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Estimate the error of the tip deflection, and the part of each coordinate in it.
+    """Estimate the error of the tip deflection, and the contribution of each coordinate to it.
 
-    It is the distance of the run `coarse` from the run `fine`, which has the same steps with more stages.
+    The error is the distance of the run `coarse` from the run `fine`, which has the same steps but more
+    stages.
     """
     straight, pairs = system.straight, [*zip(coarse, fine, strict=True)]
     change = np.max([np.abs(a.state - b.state).max(axis=0) for a, b in pairs], axis=0)[1 : system.size + 1]
@@ -172,7 +173,9 @@ def propagate_elastica(
     stages: int,
     like: Segment | None = None,
 ) -> Segment:
-    """Integrate nonlinear equations over equal steps, as `beamdyn.transient.gauss.propagate` linear ones.
+    """Integrate the nonlinear equations of a beam with large deflection over equal steps.
+
+    The corresponding function for linear equations is `beamdyn.transient.gauss.propagate`.
 
     Parameters
     ----------
@@ -232,7 +235,12 @@ class _Step:
     def advance(
         self, carrier: Carrier, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute coordinates and rates at the end of a step, and accelerations at its nodes."""
+        """Compute coordinates and rates at the end of a step, and accelerations at its nodes.
+
+        `carrier` is the motion of the carrier at the nodes; q and v are the coordinates and rates at the
+        start of the step.  Newton's method starts with the accelerations `guess`; for None they are estimated
+        from the equations linearized at the start of the step.
+        """
         drift, middle = self.drift * v, len(self.table.c) // 2
         still = np.zeros_like(drift)
         if self.kept is None:  # Jacobian for all nodes: that of the beam at rest, in these coordinates
@@ -251,8 +259,8 @@ class _Step:
     ) -> np.ndarray:
         """Solve for accelerations at the nodes by Newton's method, from a guess a.
 
-        LU factors are reused while it converges fast.  `drifted` are the coordinates at the nodes for zero
-        acceleration, v the velocities at the start of the step.
+        The LU factors of the Jacobian are reused as long as the method converges fast.  `drifted` are the
+        coordinates at the nodes for zero acceleration, v the velocities at the start of the step.
         """
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):

@@ -108,7 +108,7 @@ def integrate_by_solve_ivp(
     options = {"rtol": tolerance, "atol": 0.1 * tolerance * sizes + 1e-300, **options}
     if isinstance(method, type) and issubclass(method, GaussCollocation):
         if isinstance(system, BeamInSpaceSystem):
-            bound = "it integrates linear equations only, and those of large_deflection are not"
+            bound = "it integrates linear equations only, and large_deflection makes them nonlinear"
             raise InvalidValue("method", method.__name__, bound, "give 'auto'")
         options = {"system": system, **options}
     elif method in _JACOBIAN_METHODS:

@@ -74,7 +74,10 @@ class StepSize:
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
         # The modes above this number together have an error below a quarter of the bound.
         modes = int((cumulative > bound / 4).sum())
-        if modes > self.modes:  # resolve more modes, no more accurately than the highest needs
+        if modes > self.modes:
+            # Unresolved modes have an error as large as their motion.  `share` is the relative error to which
+            # the motion of the highest mode to be resolved is reduced, so that it meets its part of the
+            # bound.
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
             return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), modes)
         shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / order))

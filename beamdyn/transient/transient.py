@@ -39,7 +39,8 @@ from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitu
 _LIMIT_DIFFERENCE = 0.3
 _TIMES_COMPARED = 20_000  # largest number of times at which two runs are compared
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-# Fraction of the time-integration error of a motion that is included in its modal truncation error.
+# The modal truncation error is estimated along the computed motion of a run, and inherits the error of this
+# motion: this fraction of the run's time-integration error is added to the estimate.
 _OF_TIME_ERROR = 0.1
 # Computed attributes that are kept in a copy with further warnings.
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"

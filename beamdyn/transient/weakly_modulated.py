@@ -223,7 +223,7 @@ class _Expansion:
             maps.append(chebyshev.Polynomials(values, size, allowed).shortened(rough))
         change = float(ratio @ largest)  # ratio of the first-order change to the unperturbed map
         X0, Y = chebyshev.expand(point.X0), chebyshev.expand(point.Y)
-        # Conversion from accelerations to displacements.
+        # Errors of accelerations are compared as those of displacements: divided by squared frequencies.
         forces = np.tile(rows[point.size :] ** 2, len(table.c))
         size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
         terms = chebyshev.Polynomials(X0, size, min(chebyshev.NEGLIGIBLE * accuracy, 1.0) * size.max())

@@ -264,7 +264,7 @@ def test_wrong_targets_are_refused():
         with pytest.raises(ValueError, match=said):
             bd.Target("frequencies", **wrong)
     best = bd.Target("frequencies", best="largest")
-    with pytest.raises(ValueError, match="only one answer can be"):
+    with pytest.raises(ValueError, match="only one answer can be required to be"):
         bd.design(INWARD, THICKNESS, [best, best])
 
 

@@ -179,9 +179,10 @@ _PARTS = "computed", "mode", "allowance", "rounding", "error", "model_error", "l
 
 @dataclass(frozen=True)
 class _MeasuredRow:
-    """Measured values at one speed, together with the computed modes at that speed.
+    """Measured frequencies at one speed, together with the computed modes at that speed.
 
-    Arrays contain only the values that were measured.
+    Results have an entry for each frequency that was measured at this speed; `of_shapes` also has rows for
+    those that were not.
     """
 
     data: MeasuredFrequencies
@@ -202,7 +203,8 @@ class _MeasuredRow:
     def of_shapes(self) -> np.ndarray | None:
         """Modal assurance criterion (m, n) of measured and computed shapes.
 
-        If no shapes were measured, it is the result of `likeness_of_kinds`, or None.
+        If no shapes were measured, it is 1 where the measured and the computed mode are both torsional, or
+        both not, by the labels of the data, and 0 elsewhere; None if no label mentions torsion.
         """
         data, modes = self.data, self.modes
         if data.shapes is None:

@@ -152,7 +152,7 @@ class _Told:
 
     @cached_property
     def _uncertainty(self) -> np.ndarray:
-        """Standard deviation of each residual, at least that for the relative uncertainty `FINEST`."""
+        """Standard deviation of each residual, at least that of a frequency uncertain by 1e-6 (`FINEST`)."""
         least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
         return np.maximum(np.nan_to_num(self._deviation), least)
 
@@ -199,7 +199,10 @@ class _Told:
 
     @cached_property
     def _standardized(self) -> np.ndarray:
-        """Residuals divided by their own standard deviation in the fit."""
+        """Residuals divided by their standard deviations, which are smaller the more a residual is fitted.
+
+        They are sqrt(1 - leverage) times the standard deviation of the measured value.
+        """
         spread = np.sqrt(np.maximum(1 - self._information.leverage, FINEST))
         return self._residual / (self._uncertainty * spread)
 

@@ -127,7 +127,7 @@ def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]])
 
 
 def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
-    """List the additional measurements whose results change along a direction of the variables."""
+    """List the additional measurements whose results change clearly along a direction of the variables."""
     low, high = modes.fitting.limits
     ends = [np.clip(modes.x + step * direction, low, high) for step in (-_STEP, _STEP)]
     change = float(np.linalg.norm(ends[1] - ends[0]))

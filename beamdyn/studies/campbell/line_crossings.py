@@ -170,7 +170,7 @@ def _frequencies(locus: Locus, speeds: np.ndarray) -> np.ndarray:
     count = locus.ascending.shape[1]
     if locus.model.discretization.order is None:
         return np.abs(np.imag(locus.model.solver.eigenvalues(speeds, count)))
-    modes = locus.eigenvalue.shape[1]  # frequencies by elements are extrapolated, as in the locus
+    modes = locus.eigenvalue.shape[1]  # finite elements: extrapolated, as in the locus
     return np.abs(np.imag(solve_with_error(locus.model, speeds, modes, count - modes).eigen.eigenvalue))
 
 

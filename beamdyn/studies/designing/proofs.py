@@ -34,7 +34,7 @@ _VERBS = {1: "raises", -1: "lowers", 0: "does not change"}
 
 
 class _RuledOut(NamedTuple):
-    """Box of designs between two corners, all with too low, or all with too high, a result."""
+    """Box of designs between two corners, in all of which the result of a target is too low, or too high."""
 
     low: np.ndarray
     high: np.ndarray
@@ -43,7 +43,11 @@ class _RuledOut(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """Logarithms of the smallest and largest factor between two designs' results; `says` names the limit."""
+    """Range of the factor by which results of a design differ from those of the design that was found.
+
+    `least` and `most` are the logarithms of its smallest and largest value; `says` names what limits it: the
+    bounds, or a target.
+    """
 
     says: str
     least: float
@@ -120,9 +124,9 @@ class Proofs:
         return f"{' and '.join(told)} {QUOTIENTS[what]}"
 
     def _ruled_out(self) -> Iterator[_RuledOut]:
-        """Yield boxes of designs that are no nearer to a target than a computed design, a corner of the box.
+        """Yield boxes of designs of which none is nearer to a target than the computed design in one corner.
 
-        That design misses the target by more than twice the error of its result.
+        That computed design misses the target by more than twice the error of its result.
         """
         designs = self.search.designs
         (value, error), missed = self.search.known(designs), self.search.missed(designs)
@@ -161,8 +165,8 @@ class Proofs:
     # By similarity ----------------------------------------------------------------------------------
 
     def _one_factor(self) -> str:
-        """State why no common factor of the design's results meets all targets; empty if one may."""
-        # A common factor needs that only the length and common factors of the sections' properties vary.
+        """State why no factor common to the design's results meets all targets; empty if one may."""
+        # There is such a factor if only the length varies, and factors of the sections' properties.
         scene, names = self.search.scene, {*self._names}
         alone = names <= POWERS.keys() and is_bare(scene.beam) and is_clamped(scene)
         if not (alone and scene.physics == Physics() and differ_in_numbers_only(scene, names)):
@@ -176,7 +180,7 @@ class Proofs:
         return Words(f"{said}the least factor by ", least.says, apart, most.says)
 
     def _in_the_bounds(self) -> _Limits:
-        """Return the range of the factor between results of designs within the bounds and those of `x`."""
+        """Return the range, over all designs within the bounds, of their factor to the results of `x`."""
         ranges = self.search.ranges
         corners = [*Designs(ranges.inputs).extremes()]
         columns = {name: np.array([each[name] for each in corners]) for name in self._names}
@@ -185,7 +189,7 @@ class Proofs:
         return _Limits("the bounds", float(factors.min()) - _EXACT, float(factors.max()) + _EXACT)
 
     def _by_targets(self) -> Iterator[_Limits]:
-        """Yield the range of factors for which the results meet each target, within their errors."""
+        """Yield, for each target, the range of factors with which its result meets it, within its error."""
         value, error = (each[0] for each in self.search.known(self.x[None]))
         for target, own, of_own in zip(self.search.targets, value.tolist(), error.tolist(), strict=True):
             # Frequencies at rest of similar designs differ only by the factor.  Critical speeds do so only if
@@ -204,9 +208,10 @@ def _is_quotient(target: Target) -> bool:
 
 
 def _common(known: Sequence[dict[str, int]], names: Sequence[str]) -> np.ndarray | None:
-    """Return the signs of changes by numbers in several scenes; None if they differ or are not known.
+    """Return the sign with which each number changes a result, common to several scenes.
 
-    A number without effect in some scenes has the sign of the others.
+    `known` has the signs of each scene by name.  A number without effect in some scenes has the sign of the
+    other scenes.  None is returned if signs are opposite, or if one is not known.
     """
     if not all(name in each for each in known for name in names):
         return None

@@ -12,8 +12,8 @@ with the advance alpha of the slower phase in T, and the largest exponent lies b
 - let p_k be the product of the first k singular values, and mu the least ratio of the k-th and the next.
   Where log p_k of B_2m is that of its two factors within log(mu)/2 at every theta, the mean of
   log p_k(B_2m) - log p_k(B_m), over m T, is the sum of the k largest exponents, with an error of the order of
-  1/mu (the avalanche principle); a k-th of it is no more than the largest.  With all singular values it is
-  the mean of log |det A|, without error.
+  1/mu (the avalanche principle).  1/k of this sum is at most the largest exponent.  If k is the number of all
+  singular values, the sum is the mean of log |det A| / T, without error.
 
 Without damping a stable motion has the exponent 0.  No bound separates it from a small exponent: the status
 is "undecided", with a bound on the growth rate.

@@ -175,7 +175,7 @@ def _warnings(error: np.ndarray) -> Iterator[Statement]:
 # Largest, first and smallest step along a curve, as fractions of the ranges.
 _STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6
 _WIDER = 2.0  # largest ratio of a step along a curve to the previous step
-# Smallest cosine of the angle between successive steps, and at the first step.
+# Smallest cosine of the angle between a step and the previous one, and the same for the first step.
 _TURNS, _FIRST_TURNS = 0.9, 0.2
 # Factor by which the half width of a bracket about the limit is reduced, and the smallest half width.
 _NARROWER, _NARROWEST = 0.25, 1e-7

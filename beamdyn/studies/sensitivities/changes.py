@@ -267,10 +267,11 @@ def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, chang
 EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to its largest contribution
 # Ratio of a polynomial's last term to the matrices below which the interval is resolved.
 _RESOLVED = 1e-13
-# Ratio of the last term to the matrices below which it may be a rounding error; those of modal damping are as
-# large.
+# Ratio of a polynomial's last term to the matrices below which the term may be a rounding error: the rounding
+# errors of modal damping reach this size.
 _ROUNDED = 1e-10
-# Ratio of the last term of a narrower interval to that of a wider one, above which it is a rounding error.
+# Ratio of the last term in a narrower interval to that in the next wider one, above which it is taken for a
+# rounding error: narrowing the interval no longer reduces it.
 _CONVERGES = 0.1
 _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
 

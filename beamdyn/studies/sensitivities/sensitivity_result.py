@@ -144,7 +144,11 @@ def _has_constant_section(scene: Scene) -> bool:
 
 
 def _matters(scene: Scene, path: str, value: float) -> bool:
-    """Return whether frequencies depend on a number; not if it is infinite, a load, or not modelled."""
+    """Return whether natural frequencies depend on the number of a scene at a path.
+
+    They do not if the number is infinite, belongs to the motion, to gravity or to a load, or to an effect
+    that the scene does not model; factors of properties ("beam.scale.") are not counted either.
+    """
     table, _, key = path.partition(".")
     if (
         table in ("motion", "tip_load", SPEED)

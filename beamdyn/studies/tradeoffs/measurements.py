@@ -208,9 +208,10 @@ class Diagram(Result):
 
 RUNS = 7  # number of runs of a setting; the shortest counts, as other processes can only add time
 _REPEATS = 0.4  # fraction of a setting's part of the budget that is used for repetitions
-# Fraction of the budget for alternating runs; ratio to the shortest time, below which settings run again.
+# Fraction of the budget for repeating settings in alternation, and the largest ratio of a setting's time to
+# the shortest time for which the setting takes part in these repetitions.
 _AGAIN, _NEAR = 0.2, 1.3
-# Number of scatters within which times are equal; assumed relative scatter of a single run.
+# Multiple of the scatter within which two times count as equal; relative scatter assumed for a single run.
 _TIE, _SCATTER_OF_ONE = 2.0, 0.1
 
 
