@@ -7,8 +7,8 @@ not matter: the solution covers every phase difference at once.
 The equations determine which harmonics are kept: those of the load, then those that are added when these are
 multiplied by the periodic coefficients (an interaction) once, twice, and so on.
 
-They are solved as a series, whose terms add one interaction each.  In the modes of the mean equations,
-without damping, there is one equation for each harmonic h of each mode a:
+The equations are solved as a series, whose terms add one interaction each.  In the undamped modes of the mean
+equations, there is one equation for each harmonic h of each mode a:
 
     (k_a - Omega_h^2 + i Omega_h c_aa) y_ha = f_ha - (terms that couple it with other harmonics and modes)
 
@@ -249,9 +249,10 @@ class _Products:
     def of(
         cls, order: int, spectrum: np.ndarray, matrix: np.ndarray, mean: MeanModes, harmonics: list[Pair]
     ) -> _Products:
-        """Build the products of a periodic coefficient, given by spectrum and matrices, with the response.
+        """Build the products of a response of given harmonics with one periodic coefficient.
 
-        The response has the given harmonics, of which none is the opposite of another.
+        `spectrum` has the harmonics of the coefficient; `matrix`, (S, n, n), is transformed to the modes
+        `mean`.  None of the harmonics of the response is the opposite of another.
         """
         index = {h: i for i, h in enumerate(harmonics)}
         for (j, k), i in tuple(index.items()):

@@ -160,7 +160,7 @@ class Harvest(SceneResult, JudgedByRepeating):
         return electrodes_of(self.scene).harvester.strain_limit
 
     def judged(self, found: Harvest) -> np.ndarray:
-        """Return the largest power of the result `found`, for which the model error is stated: shape ()."""
+        """Return the largest power of the result `found`, shape (): the value whose model error is stated."""
         return np.array(found.best[1])
 
     @property
@@ -406,7 +406,7 @@ class ElectricLines:
 
     @classmethod
     def of(cls, request: ResponseRequest) -> ElectricLines:
-        """Solve for all coordinates of a request's modal basis."""
+        """Compute the lines of the steady response that a request asks for."""
         equations = request.model.modal_equations(request.basis)
         motion = check_steady_state(request.scene.motion)
         vibration = vibration_of(request.model, request.basis, motion, request.speeds)
@@ -414,7 +414,7 @@ class ElectricLines:
 
     @classmethod
     def of_resistances(cls, request: ResponseRequest, resistances: np.ndarray) -> ElectricLines:
-        """Solve for S load resistances [ohm] in place of S speeds, at the one speed of a request."""
+        """Compute the lines for S load resistances [ohm] in place of S speeds, at a request's first speed."""
         mechanical = reduce_to_modes(request.model.equations, request.basis)
         assert mechanical.circuit is not None, "the beam has a load"
         circuits = (replace(mechanical.circuit, resistance=each) for each in resistances.tolist())
@@ -432,9 +432,9 @@ class ElectricLines:
         equations: Equations,
         parts: list[tuple[PeriodicSystem, np.ndarray]],
     ) -> ElectricLines:
-        """Solve for all coordinates at S speeds.
+        """Compute the lines at S speeds from the equations, given in uncoupled parts.
 
-        The equations are given in uncoupled `parts`, each with the indices of its coordinates.
+        Each of the `parts` has the indices of its coordinates.
         """
         motion = check_steady_state(request.scene.motion)
         every = np.broadcast_to(np.eye(equations.size), (len(speeds), equations.size, equations.size))
@@ -479,7 +479,7 @@ class HarvestedPowers:
 
     @classmethod
     def of(cls, request: ResponseRequest) -> HarvestedPowers:
-        """Solve all coordinates of a request's modal basis, and compute powers and largest values."""
+        """Compute the steady response that a request asks for, and from it powers and largest values."""
         lines = ElectricLines.of(request)
         equations, pairs, q, velocity = lines.equations, lines.pairs, lines.coordinates, lines.velocity
         C = equations.matrices[1].get("unity", np.zeros((equations.size, equations.size)))

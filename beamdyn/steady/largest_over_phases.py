@@ -14,7 +14,8 @@ _MAXIMA = 16  # number of largest local maxima of the samples that are refined
 _LEAST_SAMPLE = 0.5  # samples below this fraction of the largest are not near the maximum (Riesz' inequality)
 _MOST_STEPS = 20  # largest number of Newton's steps; more than a few are needed only near a saddle
 _CONVERGED = 1e-15  # relative increase by one step below which the maximum has converged
-# Largest sum of the weak lines, relative to the sum of all lines: they shift maxima, but hardly add any.
+# Lines count as weak if their sum is at most this fraction of the sum of all lines: weak lines shift maxima,
+# but hardly add any.
 _WEAK = 0.02
 # Offset of the samples, in spacings of samples: symmetric sums have saddles at multiples of the spacing.
 _OFFSET = np.array([0.21, 0.37])

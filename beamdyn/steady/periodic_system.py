@@ -335,8 +335,8 @@ def excitation_lines(
     motion : Motion or None
         The motion, which names the lines.
     order : int
-        Order of the lines: 1 for the lines of the load and of the stiffness; n also for those that up to n -
-        1 products of these with the periodic stiffness add.
+        1: the lines of the load and of the stiffness; n: also the lines that arise when these are multiplied
+        by the periodic stiffness up to n - 1 times.
 
     Returns
     -------

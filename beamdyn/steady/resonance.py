@@ -36,8 +36,8 @@ from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, per
 
 _HIGHEST_ORDER = 20  # highest accepted order of lines, whose search takes ten seconds
 _NODES = 400  # number of intervals of speed in which roots are bracketed
-# Number of these intervals with large deflection: fewer, as an equilibrium is solved at each speed, and as
-# the loci are smooth.
+# Number of intervals of speed for a beam with large deflection: fewer than for a straight beam, as an
+# equilibrium is solved at each speed, and as the loci are smooth.
 _BENT_NODES = 100
 # Number of modes solved in addition to the requested ones: with speed, modes of other uncoupled parts of the
 # equations may become lower than these.
@@ -146,7 +146,7 @@ def resonance_speeds(
 
 
 def _check_stiffness(scene: Scene, critical: float) -> None:
-    """Raise an error if the beam turns over about its root at any speed above 0."""
+    """Raise an error if the critical speed is 0: the beam then turns over about its root at any speed."""
     if critical > 0:
         return
     in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
@@ -196,7 +196,11 @@ class _UncoupledModes:
 def _list_resonances(
     forced: list[Line], parametric: list[Line], modes: int, order: int
 ) -> list[tuple[str, Line, tuple[int, ...]]]:
-    """List kind, line and mode indices of each resonance up to an order."""
+    """List kind, line and mode indices of each resonance up to an order.
+
+    A "forced" resonance has the index of one mode; a "parametric" one has those of the two modes whose
+    frequencies are added, which may be the same.
+    """
     pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
     by_load = [("forced", line, (i,)) for line in forced for i in range(modes)]
     return [*by_load, *(("parametric", line, pair) for line in parametric for pair in pairs)]

@@ -156,7 +156,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
 def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute eigenvalues and eigenvectors of A, the first-order form of the mean equations at each speed.
 
-    Without damping, they are computed from mass and stiffness.
+    If there is no damping, they are computed from mass and stiffness.
     """
     if system.mean[1].any():
         return np.linalg.eig(A)
@@ -170,7 +170,7 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
 def _balance(
     sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Scale overdamped modes so that their coupling to other modes is equal in both directions.
+    """Return the coefficients V with overdamped modes scaled: coupled equally strongly in both directions.
 
     Scaled like oscillating modes, the slowly decaying mode of a circuit with a large resistance would enlarge
     the Gershgorin discs of all other modes in proportion to that resistance.
@@ -248,11 +248,12 @@ class _MeanMotion:
         return reduce(np.add, parts)
 
     def shrunk_radius(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the radii (rates, modes) of Gershgorin discs, made smaller where other discs are far away.
+        """Compute the radii (rates, modes) of Gershgorin discs, reduced by scaling the coordinates.
 
-        The coordinates of far discs are scaled by t < 1.  In the row of a disc this keeps the terms of
-        coupling with discs close by, and multiplies the terms of coupling with far discs by t.  The radii of
-        far discs grow by 1/t, to at most half of their distance.
+        Seen from one disc, another is close if its distance is at most twice the largest radius, else far.
+        Scaling the coordinates of the far discs by t < 1 multiplies, in the row of the one disc, the terms of
+        coupling with far discs by t, and keeps those with close discs.  The radii of the far discs grow by
+        1/t, to at most half of their distance.
         """
         radius, distance = self.radius, np.abs(self.gap(harmonics))
         close = 2 * radius.max(axis=1)[:, None, None, None]
@@ -265,7 +266,8 @@ class _MeanMotion:
     def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
         """Yield index and resonances of each pair of phase rates at which discs of modes overlap.
 
-        Only modes of opposite energy sign, and pairs marked in `considered`, are compared.
+        Only discs of modes of opposite energy are compared.  `considered`, shape (S,), marks the pairs of
+        phase rates to be examined.
         """
         levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
@@ -273,7 +275,7 @@ class _MeanMotion:
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
-        # Harmonics are in the order of their interactions: the first stationary one has the fewest.
+        # Harmonics are in the order of their interactions: the first one of frequency 0 has the fewest.
         reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]
         pairs = np.array([h for level in reached for h in level])
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
@@ -338,7 +340,7 @@ class _Resonance:
     def _growth_rate_at(self, phase: float, scale: float) -> tuple[float, float]:
         """Compute the growth rate and its error [1/s] at a given phase between commensurate rates.
 
-        Harmonics are added until the growth rate settles; `scale` is that of `growth_rate`.
+        Harmonics are added until the growth rate has converged; `scale` is as for `growth_rate`.
         """
         hill, inner = self._hill_matrix(1, phase)
         s, z = np.linalg.eig(hill.toarray())

@@ -71,8 +71,8 @@ SIMILAR = {
     *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
     *_WITHOUT_EFFECT,
 }
-# Quantities on which the matrices depend, with the degree of the polynomial; in "angle" it is a trigonometric
-# polynomial.
+# Quantities of which the matrices are polynomials, with the degree of the polynomial; for "angle" the
+# polynomial is trigonometric.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
     **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
@@ -88,7 +88,10 @@ Nodes = tuple[tuple[str, tuple[float, ...]], ...]
 
 
 def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
-    """Return whether designs of a study over some inputs are similar beams, to be solved in one basis."""
+    """Return whether all designs of a study over the inputs `names` are similar beams.
+
+    They can then be solved in one basis.
+    """
     plain = scene.physics in (Physics(), Physics(planes=2)) and not scene.chooses_physics
     lumped = bool(scene.beam.point_masses) and bool(names & POWERS.keys())
     apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
@@ -133,7 +136,11 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Compute ratios of mass per length (0) or a stiffness (1, 2, 3) to the reference's: see `POWERS`."""
+        """Compute the ratio of a property of each design to that of the reference, shape (N,).
+
+        `which` is 0 for the mass per length, and 1, 2 or 3 for the bending, axial or second bending
+        stiffness: the index in the values of `POWERS`.
+        """
         scale = np.ones(self.count)
         for name, powers in POWERS.items():
             if name in self.columns:
@@ -156,7 +163,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def strain(self) -> np.ndarray:
-        """Ratio of each design's axial strain to the reference's at the speed that corresponds to it."""
+        """Ratio of each design's axial strain to that of the reference at the corresponding speed."""
         return self._scale(1) / (self.length**2 * self._scale(2))
 
     # Quantities on which the matrices depend as polynomials -------------------------------------------
@@ -291,7 +298,10 @@ class SimilarDesigns(FieldsOnly):
 
 
 def nodes_of(parts: Iterable[SimilarDesigns]) -> Nodes:
-    """Return the values of each quantity between which matrices are interpolated, for designs in parts."""
+    """Return the values of each quantity between which the matrices of all designs are interpolated.
+
+    The designs are given in several `parts`.
+    """
     ends: dict[str, tuple[float, float]] = {}
     for part in parts:
         for name, values in part.quantities.items():

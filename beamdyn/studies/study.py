@@ -41,7 +41,7 @@ VERSIONS = (
 )  # packages whose versions affect the last bits of stored results
 _KIND = "beamdyn study"
 _BATCHED, _SINGLE = 1024, 16  # number of results per task, for designs solved in batches and one by one
-_AT_ONCE = 100_000  # number of designs whose quantities are compared at once
+_AT_ONCE = 100_000  # number of designs whose quantities are computed at once
 # Largest number of inputs of which all combinations of smallest and largest values are checked first.
 _MOST_CORNERS = 10
 
@@ -342,7 +342,8 @@ class _Request:
     def solve(self, run: TaskRunner) -> AnswerArrays:
         """Compute the results: in one basis if the designs are similar beams, otherwise one by one.
 
-        The size of tasks follows from the request alone; a response is solved at all speeds at once.
+        The size of tasks follows from the request alone, so that results do not depend on the number of
+        processes.  Responses of a design are solved at all its speeds in one task.
         """
         found = AnswerArrays((self.others.count, self.speeds, self.question.numbers))
         size = _BATCHED if self.is_similar else _SINGLE

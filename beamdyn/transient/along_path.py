@@ -220,7 +220,9 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """Difference from the larger model in a stretch: largest at the tip [m]; e and its rate at the end.
+    """Difference e of the larger model's motion in a stretch: its largest value at the tip [m], and its end.
+
+    `e` and `rate` are the difference and its time derivative, in coordinates, at the end of the stretch.
 
     `ringing` is the tip's vibration amplitude [m] in the fast modes, if the stretch begins with a load jump.
     """

@@ -214,7 +214,7 @@ def propagate_elastica(
 
 
 def _at_nodes(stages: int, values: np.ndarray) -> np.ndarray:
-    """Interpolate values (steps, nodes, coordinates) from Gauss nodes to a rule with `stages` nodes."""
+    """Interpolate values (steps, nodes, coordinates) from their Gauss nodes to `stages` Gauss nodes."""
     given = values.shape[1]
     return legendre.legvander(gauss_rule(stages)[0], given - 1) @ legendre_series(given) @ values
 

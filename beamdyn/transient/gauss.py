@@ -205,7 +205,7 @@ def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
 
 
 def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Build the matrix of the collocation equations of each step, for the accelerations at all nodes."""
+    """Build the matrices (N, s n, s n) of the collocation equations for the accelerations at the nodes."""
     N, s, n, _ = K.shape
     matrix = np.empty((N, s, n, s, n))
     np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=matrix)
@@ -229,7 +229,7 @@ def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, tab
 
 
 def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Evaluate linear functions with coefficients `outputs` (rows) of coordinates q (last axis)."""
+    """Evaluate linear functions of coordinates q (last axis); rows of `outputs` are their coefficients."""
     return np.stack([q @ output for output in outputs], axis=-1)
 
 
@@ -374,7 +374,11 @@ def growth_without_bound(how_far: str) -> ArithmeticError:
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
-    """Compute the states state[1:] from state[0]; equal steps use powers of one map, which are returned."""
+    """Compute the states state[1:] of a block of steps from state[0], in place.
+
+    Equal steps use the powers of one map.  They are taken from `powers` if these fit, and returned for the
+    next block; None is returned for unequal steps.
+    """
     if maps.step_extended is not None:
         if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
             # Powers of the map cause one rounding error per block, instead of one per step.

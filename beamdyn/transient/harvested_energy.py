@@ -92,7 +92,7 @@ class TransientHarvest(JudgedByRepeating):
         yield f"time {error_at_most(self.run.time_error / (self.run.largest or 1.0))}"
 
     def judged(self, found: TransientHarvest) -> np.ndarray:
-        """Return the harvested energy of `found`, for which the model error is estimated: shape ()."""
+        """Return the harvested energy of `found`, shape (): the value whose model error is stated."""
         return np.array(found.energy[-1])
 
     def plot(self, ax: Axes | None = None) -> Axes:

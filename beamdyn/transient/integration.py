@@ -33,7 +33,7 @@ from beamdyn.transient.trajectory import Trajectory, magnitude
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
 _WORTH_A_SEGMENT = 500  # number of steps whose cost equals that of the preparation of a segment
-_TIMES_COMPARED = 257  # number of times at which the equations are compared with those at the start
+_TIMES_COMPARED = 257  # number of times at which it is checked whether the equations are constant
 _BALANCE = 1e-13  # residual force, over the largest force, below which it is a rounding error of equilibrium
 # Fraction of the tolerance allowed for truncating the series in steps with weakly varying stiffness.
 _SERIES_SHARE = 0.1

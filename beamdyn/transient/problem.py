@@ -81,7 +81,7 @@ def choose_for_basis(
     if scene.bends_in_space:
         plain = replace(scene.straightened, physics=Physics(planes=scene.physics.planes))
         return Model(scene, choose_for_basis(plain, discretization, basis, tolerance).discretization)
-    if scene.physics.large_deflection:  # the basis consists of modes of the straight beam all the same
+    if scene.physics.large_deflection:  # here, too, the basis consists of modes of the straight beam
         return choose_for_basis(scene.straightened, discretization, basis, tolerance).of(scene)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.is_damped:

@@ -39,8 +39,8 @@ _SLACK = 1e-6  # fraction of a step by which rounding may lengthen it
 # Largest and smallest number of equal steps whose maps are expanded about one mean motion of the root.
 _EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128
 _SAME_LENGTH = 1e-6  # fraction of a step by which lengths and ends of equal steps may differ
-# In steps of at least the first number of pieces (sample intervals), the second number of nodes or stages in
-# each piece suffices.
+# If all steps have at least the first number of pieces (sample intervals), the second number of nodes or
+# stages in each piece suffices.
 _MANY_PIECES, _IN_EACH = 4, 5
 
 
@@ -299,7 +299,11 @@ def _expand(
     acceleration: np.ndarray,
     accuracy: float,
 ) -> bool:
-    """Fill in a block of equal steps by maps from a series; False if they are unequal or vary too much."""
+    """Compute states and accelerations in a block of equal steps, in place, by maps from a series.
+
+    Return False, without a result, if the steps are few or unequal, or the equations vary too much for the
+    series.
+    """
     count, n = block.stop - block.start, system.size
     if count < _FEWEST_EQUAL or not steps.are_equal(block):
         return False

@@ -166,7 +166,10 @@ def check_number_of_steps(steps: int, size: int, t_end: float) -> None:
 
 
 def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:
-    """Split a run at breakpoints of the motion, and segments of changing speed into parts: all ends [s]."""
+    """Split a run into segments for the choice of the step size; return all their ends [s].
+
+    The run is split at the breakpoints of the motion; segments of changing speed are split into four parts.
+    """
     parts = []
     for a, b in pairwise(smooth_piece_ends(motion, t_end)):
         speed_changes = np.ptp(motion.at(np.linspace(a, b, 9)[1:-1]).speed) > 0

@@ -179,7 +179,10 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
-    """Compute the magnitude of a vector that a unit of each coordinate causes, from its components (rows)."""
+    """Compute the magnitude of an output vector, such as the tip deflection, per unit of each coordinate.
+
+    The rows of `outputs` are the components of the vector per unit of each coordinate.
+    """
     return np.hypot.reduce(np.abs(outputs))
 
 
@@ -254,7 +257,8 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
     middle = steps.piece_start + steps.piece_width / 2
     slope = np.diff(system.equations.load(system.root(middle)), axis=0) / np.diff(middle)[:, None]
     bend = np.pad(np.abs(np.diff(slope, axis=0)).sum(axis=1), 1, mode="edge")
-    # Changes of the load's slope change displacements in proportion to the cube of the step size.
+    # Steps are ranked by their length, and by the roughness of the load: a change of the load's slope changes
+    # displacements in proportion to the cube of the step size.
     kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)
     worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
     for chosen, represented in ((choose_checked_steps(count, most), count), (worst, len(worst))):

@@ -185,9 +185,10 @@ def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) ->
 
 
 def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Choose the times of a window's highest samples, and its two ends, perhaps repeated: (_CANDIDATES + 2,).
+    """Choose the times of the 12 highest samples in a window, and its two ends: shape (14,).
 
-    Samples are ranked by the maximum of the parabola through three neighbours.
+    Times repeat if there are fewer samples.  Samples are ranked by the maximum of the parabola through three
+    neighbours.
     """
     first, last = np.searchsorted(times, start), np.searchsorted(times, end, side="right")
     size = size[first:last]

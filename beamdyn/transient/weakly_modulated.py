@@ -284,7 +284,11 @@ class _Block:
 
 
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Multiply each polynomial in T by each monomial, row by row: these are weights for summing `values`."""
+    """Multiply each polynomial in T by each monomial, row by row.
+
+    Only as many polynomials are used as `values` has coefficients; the products are the weights with which
+    these coefficients are summed.
+    """
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
 
 

@@ -272,8 +272,8 @@ class _MeasuredRow:
             yield Words(f"mode {k + 1} of the scene, {frequency} at ", Speeds(self.data.speeds[self.row]))
 
 
-# Possible mistakes of units: ratio of given to correct values, as text (the key) and as a number; and in
-# which unit the values would then be.
+# Possible mistakes of units: ratio of given to correct values, as text (the key) and as a number; and words
+# for the unit in which the values would then be.
 _UNITS: Mapping[str, tuple[float, str]] = {
     "2 pi": (2 * pi, "in rad/s, and read as Hz"),
     "60": (60.0, "in 1/min, and read as Hz"),

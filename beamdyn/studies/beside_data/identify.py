@@ -30,8 +30,8 @@ from beamdyn.studies.beside_data.separability import FINEST, Information, not_se
 MOST_SOLVES = 40  # largest number of scenes whose modes are computed, per unknown number
 _LEVEL = 0.95
 _CHANCE = 0.01  # probability of reporting an outlier in data without outliers
-# Quantile of the sum of squares above which a fit counts as poor, is repeated from further starts, and is
-# reported.
+# A fit counts as poor if its sum of squares exceeds this quantile: it is repeated from further starts, and a
+# warning is given.
 _LIKELY = 0.999
 _NOTHING = 1e-20  # sum of squared relative deviations below which data count as exact
 

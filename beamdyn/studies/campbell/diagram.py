@@ -408,7 +408,8 @@ def _bound(
 ) -> tuple[list[tuple[str, FrequencyBounds]], list[str]]:
     """Compute guaranteed bounds of each scene at a speed.
 
-    Return bounds, warnings, and the reasons why other scenes have no bounds.
+    Return the bounds with the labels of their scenes; and sentences: warnings, and why other scenes have no
+    bounds.
     """
     bounded, refused = [], []
     for label, names, locus in named:

@@ -101,7 +101,10 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Whether each target's result rises (1), falls (-1) or stays (0) with a number; None if unknown."""
+        """How the result of each target changes with each number: it rises (1), falls (-1), or does not (0).
+
+        For each target an array (p,); None if it is not known.
+        """
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
@@ -203,7 +206,7 @@ class Proofs:
 
 
 def _is_quotient(target: Target) -> bool:
-    """Return whether a target is a value or a limit of a result that is a quotient."""
+    """Return whether a target is a value or a limit of a result that is an extremum or mean of quotients."""
     return target.what in QUOTIENTS and not target.speed and target.best is None
 
 

@@ -189,7 +189,7 @@ def _products(B: np.ndarray) -> np.ndarray:
 
 
 def _values(p: np.ndarray) -> np.ndarray:
-    """Convert logarithms of the products of the first singular values to those of the singular values."""
+    """Convert logarithms of products of the first singular values to logarithms of each singular value."""
     return np.diff(p, axis=1, prepend=0.0)
 
 

@@ -91,7 +91,7 @@ def period_of(scene: Scene) -> Period:
 
 
 def _is_fraction(ratio: float) -> bool:
-    """Return whether a ratio is within rounding a fraction with a denominator <= 64 and numerator <= 4096."""
+    """Return whether a ratio is a fraction with numerator <= 4096 and denominator <= 64, within rounding."""
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     return abs(found - Fraction(ratio)) <= _COMMENSURATE * ratio and found.numerator <= _MOST_OTHERS
 

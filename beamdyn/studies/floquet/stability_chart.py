@@ -121,7 +121,10 @@ class StabilityChart(SceneResult, JudgedByRepeating):
         return [evenly_spread(len(each.values), _JUDGED) for each in self.inputs]
 
     def judged(self, found: StabilityChart) -> np.ndarray:
-        """Return the largest multipliers' magnitudes for which the model error is computed: at most (9,)."""
+        """Return the magnitude of the largest multiplier in `found` at the points with a model error: (9,).
+
+        There are fewer points if a number of the chart has fewer than three values.
+        """
         own = found.status.shape == self.status.shape
         return (found.spectral_radius[np.ix_(*self._few)] if own else found.spectral_radius).ravel()
 

@@ -30,7 +30,7 @@ from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, m
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
 
-_REAL = 1e-3  # imaginary part of a multiplier below which it is real: two multipliers meet at 1 or -1
+_REAL = 1e-3  # a multiplier with a smaller imaginary part counts as real, where two meet at 1 or -1
 
 
 @dataclass(frozen=True)
@@ -180,7 +180,8 @@ _TURNS, _FIRST_TURNS = 0.9, 0.2
 # Factor by which the half width of a bracket about the limit is reduced, and the smallest half width.
 _NARROWER, _NARROWEST = 0.25, 1e-7
 _FINE = 1e-11  # accuracy of a root, as a fraction of the ranges of the two numbers
-# Distances, as fractions of the ranges, at which the stability on both sides of a point is computed.
+# Distances, as fractions of the ranges, that are tried in turn until the motion at this distance from a point
+# of the limit is certainly stable on one side and unstable on the other.
 _ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
 _MOST = 400  # largest number of points of a curve in each direction
 # Distance from the border of the chart, over the length of a segment, below which the segment ends on the
@@ -261,7 +262,11 @@ class LimitTracer:
         return -float(_nearest(found)[0] ** 2 / 4)
 
     def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
-        """Make the point of the limit at a root; at the distance `error` from it stability is certain."""
+        """Build the point of the limit at a root of the function, with its error.
+
+        At a distance of the error along the normal, the motion is certainly stable on one side of the root,
+        and unstable on the other.
+        """
         error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
         found = self._multipliers(place)
         leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]

@@ -221,8 +221,8 @@ def crossing_sensitivities(
 
     References
     ----------
-    Lancaster (1966), Lambda-Matrices and Vibrating Systems, along the line of the excitation
-    (own).
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems; for the speed at which a frequency stays on an
+    excitation line: own derivation.
 
     Examples
     --------

@@ -29,7 +29,8 @@ from beamdyn.scene.scene import Scene, SceneResult
 
 _TOUCHING = 1e-6  # distance between two points, over the length, below which they touch
 _STEP = 0.01  # step of a number, as a fraction of its value or of the typical size of its kind
-# Ratio of the number of modes of another scene to that of the result, so that each mode has a counterpart.
+# Ratio of the number of modes to that of the result, when the analysis is repeated for another scene: so each
+# mode of the result has a counterpart.
 _FURTHER = 2
 _SAME = 0.2  # relative distance below which results of two scenes may belong to the same mode
 # Smallest similarity of a name that is proposed for a mistyped one: many names have the same beginning.

@@ -346,8 +346,9 @@ def _measure_family(
 
 
 def _time_runs(setting: TimedCase, rest: float, spare: float) -> tuple[Any, list[float]]:
-    """Run a setting several times; return its result and the processor times [s].
+    """Run a setting up to seven times; return its result and the processor times of the runs [s].
 
+    Further runs start until the time `spare` [s] is used up; all runs are to end within the time `rest` [s].
     Other processes hardly affect the processor time; all runs use one thread.
     """
     start = perf_counter()

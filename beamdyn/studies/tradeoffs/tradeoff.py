@@ -138,7 +138,7 @@ def tradeoff(
     unresolved, scene = scene, plain_physics(scene)
     modes, budget = count("modes", modes, 1, MOST_MODES, _REMEDY), _check_budget(budget)
     if progress is not None:
-        function("progress", progress, "it takes the numbers of finished diagrams and of all")
+        function("progress", progress, "it takes the numbers of finished diagrams and of all diagrams")
     if t_end is not None and scene.motion is None:
         bound = "the scene has no motion, so there is no transient"
         raise InvalidValue("t_end", t_end, bound, "add one, or leave it out")
