@@ -35,7 +35,7 @@ _MOST_ENTRIES = 10**7  # largest number of matrix entries solved as one batch: 8
 _MOST_TERMS = 12
 _SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
 # Pairs of phase rates that have converged are removed from the arrays only if they are at least this fraction
-# of all pairs: the arrays are copied without them, which takes time, too.
+# of the pairs in them: the arrays are copied for this, which takes time, too.
 _WORTH_LEAVING_OUT = 0.25
 
 

@@ -450,7 +450,7 @@ def _warnings(
     yield from validity.warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := error > tolerance).any():
         said = (
-            f"the harmonics are not resolved to {tolerance:g} at ",
+            f"the truncation error of the harmonics exceeds the tolerance {tolerance:g} at ",
             validity.list_speeds(speeds, at),
             "; see error",
         )

@@ -6,14 +6,17 @@ balance, here in the modes of the mean equations:
 
     (s + i Omega_h) z_h = diag(sigma) z_h + sum_g V_(h-g) z_g
 
-With V = 0 the eigenvalues are sigma_a - i Omega_h.  Each stays in the Gershgorin disc about that value with
-the radius rho_a, the sum of its row of |V|.  Without damping, and with a mean energy that is positive, an
-eigenvalue leaves the imaginary axis only by meeting one of opposite energy (Krein), so that the motion is
-stable if no disc of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h, or if all discs lie left of
-the axis.  Without damping, discs that are far from others are drawn smaller first, by scaling the
-coordinates.  Eigenvalues are computed only where discs still overlap.  The matrix then has the harmonics
-between which the motion resonates, (0, 0) and the h of the overlaps, and those that a few multiplications of
-these by the periodic coefficients (interactions) add.  Their number is increased until the growth rate has
+Here sigma are the eigenvalues of the mean equations, and V the harmonics of the periodic coefficients.  With
+V = 0 the exponents s are sigma_a - i Omega_h.  Each stays in the Gershgorin disc about that value with the
+radius rho_a, the sum of its row of |V|.  If there is no damping, and the mean energy is positive, an exponent
+leaves the imaginary axis only by meeting one of opposite energy (Krein).  So the motion is stable if no disc
+of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h; it is also stable if all discs lie left of the
+axis.  If there is no damping, the radii of discs that are far from others are reduced before this comparison,
+by scaling the coordinates.
+
+Eigenvalues are computed only where discs still overlap.  The matrix then has the harmonics between which the
+motion resonates, (0, 0) and the h of the overlaps, and those that a few multiplications of these by the
+periodic coefficients (interactions) add.  The number of interactions is increased until the growth rate has
 converged.
 
 In shapes of arrays, S counts speeds, n coordinates, m eigenvalues of the mean equations, and H harmonics.
@@ -69,12 +72,12 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     rate, error : ndarray, shape (S,)
-        The error of modes that resonate is the change by the last interaction whose harmonics are kept,
-        and where the rates are commensurate a tenth of the differences over the phases tried.  The rate of
-        other modes is that of the mean equations, and its error the shift by the periodic coefficients in
-        second order.  Where the mean equations neither grow nor decay, as without damping, that shift is
-        taken to leave the growth rate 0, without error.  The error is infinite where the mean equations are
-        singular.
+        The error of modes that resonate is the change by the last interaction whose harmonics are kept; where
+        the rates are commensurate, a tenth of the differences between the phases tried is added.  The rate of
+        other modes is that of the mean equations, and its error is the second-order shift by the periodic
+        coefficients.  Where motions by the mean equations neither grow nor decay, as without damping, the
+        shift is taken not to change the growth rate 0, which then has no error.  The error is infinite where
+        the mean equations are singular.
     """
     A, periodic = _first_order(system)
     sigma, R = _solve_mean(system, A)

@@ -1,18 +1,19 @@
 """Similar designs: a reference beam with different tip bodies, springs, radii, angles and speeds.
 
-Similar beams have mass per length, stiffness and length s_m, s_k and s_L times those of a reference.  They
-vibrate like the reference beam if its tip mass is divided by s_m s_L, its moments of inertia by s_m s_L^3,
-offset and radius by s_L, root springs are multiplied by s_L/s_k, and the speed by
+A similar beam has mass per length, stiffness and length s_m, s_k and s_L times those of a reference beam.  It
+vibrates like the reference beam with the similar beam's tip mass divided by s_m s_L, moments of inertia
+divided by s_m s_L^3, offset and radius divided by s_L, root springs multiplied by s_L/s_k, and speed
+multiplied by
 
     T = sqrt(s_m s_L^4 / s_k);
 
-the frequencies of the reference, divided by T, are those of the beams.  The reference's matrices are
-polynomials of few quantities.  In one plane of bending they are linear in the mass of the body, in its moment
-of inertia J_n about the axis of bending, in (J_e - J_1)/J_n with its transverse and axial moments of inertia
-J_e and J_1, in r cos(phi) of radius and setting angle, in the squared cosine of the bending angle and in the
-spring, quadratic in the offset.  In two planes they are linear in the moments of inertia, in the springs, and
-in the stiffness in the second direction over that in the first, and combinations of 1, cos(2 psi) and
-sin(2 psi) of the bending angle psi.  They are interpolated between the extremes of all designs.  Every
+its frequencies are those of this reference beam, divided by T.  The reference's matrices are polynomials of
+few quantities.  In one plane of bending they are linear in the mass of the body, in its moment of inertia J_n
+about the axis of bending, in (J_e - J_1)/J_n with its transverse and axial moments of inertia J_e and J_1, in
+r cos(phi) of radius and setting angle, in the squared cosine of the bending angle and in the spring,
+quadratic in the offset.  In two planes they are linear in the moments of inertia, in the springs, and in the
+stiffness in the second direction over that in the first, and they are combinations of 1, cos(2 psi) and sin(2
+psi) of the bending angle psi.  The matrices are interpolated between the extremes of all designs.  Every
 combination of extremes must be a valid scene, but a moment of inertia could then exceed the sum of the other
 two.  So the tip body's second moments of mass are combined instead: moments of inertia are sums of two of
 them, and any nonnegative values belong to a possible body.
@@ -259,7 +260,7 @@ class SimilarDesigns(FieldsOnly):
     def can_be_solved(self) -> bool:
         """Whether all designs can be solved with the same coordinates.
 
-        This is so if each root spring is infinite (clamped) in all designs, or finite in all designs.
+        This is so if each root spring is infinite (clamped) in all designs, or finite and positive in all.
         """
         return all(
             (v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values()

@@ -96,7 +96,8 @@ def study(
         Beginning and end of the time window for peaks [s], at whose end each transient ends; 20 to 30 s by
         default.
     combine : {"product", "zip"}
-        Combine each value with each of the other inputs, or take the first of all, the second of all, ...
+        "product": all combinations of the values of the inputs; "zip": the first values of all inputs
+        together, then their second values, and so on.
     discretization, tolerance
         As for `natural_modes`; the tolerance of amplitudes, strains and power as for `steady_response`, that
         of peaks as for `sweep`.

@@ -283,7 +283,7 @@ class _Step:
             if size > _FAST * last:
                 factors = None
             last = size
-        raise StepNotSolved("the equations of a step were not solved: take shorter steps")
+        raise StepNotSolved("Newton's method did not converge in a time step: take shorter steps")
 
     def _balances(self, residual: np.ndarray, motion: np.ndarray) -> bool:
         """Return whether a residual is only rounding error of the elastic forces."""

@@ -73,7 +73,7 @@ def test_where_no_design_meets_the_targets_the_nearest_is_said(targets, is_sure)
     assert not found.found and found.only_one_way == is_sure
     said = "No design in the bounds has " if is_sure else "No design was found that has "
     assert found.sentences()[0].startswith(said)
-    assert ("no other comes nearer" in " ".join(found.sentences())) == is_sure
+    assert ("no other design comes nearer" in " ".join(found.sentences())) == is_sure
 
 
 def test_a_number_has_an_effect_where_an_answer_is_largest():

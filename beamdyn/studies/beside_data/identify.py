@@ -152,7 +152,7 @@ class _Told:
 
     @cached_property
     def _uncertainty(self) -> np.ndarray:
-        """Standard deviation of each residual, at least that of a frequency uncertain by 1e-6 (`FINEST`)."""
+        """Standard deviation of each residual, at least that by the relative uncertainty 1e-6 (`FINEST`)."""
         least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
         return np.maximum(np.nan_to_num(self._deviation), least)
 
@@ -199,9 +199,9 @@ class _Told:
 
     @cached_property
     def _standardized(self) -> np.ndarray:
-        """Residuals divided by their standard deviations, which are smaller the more a residual is fitted.
+        """Residuals divided by their standard deviations after the fit.
 
-        They are sqrt(1 - leverage) times the standard deviation of the measured value.
+        These are sqrt(1 - leverage) times the standard deviations of the data.
         """
         spread = np.sqrt(np.maximum(1 - self._information.leverage, FINEST))
         return self._residual / (self._uncertainty * spread)

@@ -145,11 +145,11 @@ class FoundDesign(SceneResult):
             beside = "" if sure or len(missed) == len(self.met) else " together with all other targets"
             yield Words(none, joined(" and ", said), beside, nearest, numbers, ".")
             if self.proof:
-                yield f"It is proven that no other comes nearer: {self.proof}."
+                yield f"It is proven that no other design comes nearer: {self.proof}."
             elif self.why_none:
-                yield Words("It is proven that there is none that meets all targets: ", self.why_none, ".")
+                yield Words("It is proven that no design meets all targets: ", self.why_none, ".")
             elif self.only_one_way:
-                said = "which suggests, but does not prove, that no other comes nearer"
+                said = "which suggests, but does not prove, that no other design comes nearer"
                 yield f"These answers {self._ways()} over all designs computed, {said}."
         if self.without_effect:
             many = len(self.without_effect) > 1

@@ -66,7 +66,7 @@ def rates_of(scene: Scene) -> tuple[float, ...]:
     rates = tuple(rate for rate in rates if rate)
     if not rates:
         bound = "the carrier stands still, and nothing pulsates"
-        raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or let the carrier move")
+        raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or give another motion")
     return rates
 
 

@@ -358,7 +358,7 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
         raise InvalidValue(name, value, bound, "place the point at a small distance from there")
     equations = equations_near(model, scene)
     if equations.size != model.equations.size:
-        bound = "the number of functions differs between nearby designs"
+        bound = "the number of basis functions differs between nearby values of the number"
         raise InvalidValue(name, value, bound, "give a Ritz or a Fem of another size")
     fine, coarse = equations.steady(), model.equations.coarse
     if coarse is None:

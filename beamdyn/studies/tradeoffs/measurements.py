@@ -166,7 +166,7 @@ class Diagram(Result):
         See `Result.headline`.
         """
         yield self.title
-        yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in front"
+        yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in the Pareto front"
         yield f"reference to {number(self.resolved)}"
 
     @classmethod

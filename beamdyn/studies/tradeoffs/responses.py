@@ -152,7 +152,7 @@ def _check_by_dop853(scene: Scene, exact: Transient, modes: int, basis: Discreti
     t = np.linspace(0, end, 1001)
     difference = np.abs(other.deflection(t) - exact.deflection(t)).max()
     differs = _relative(float(difference), other.largest)
-    return f"DOP853 with rtol {_CHECK_RTOL:g} differs by {differs:.1e} to {end:.3g} s"
+    return f"DOP853 with rtol {_CHECK_RTOL:g} differs by {differs:.1e} up to {end:.3g} s"
 
 
 def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) -> Iterator[Family]:
