@@ -82,7 +82,7 @@ def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarr
 
 
 def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: Pair = (0, 0)) -> np.ndarray:
-    """Build the matrices that convert the harmonics of a factor to those of its product with a function.
+    """Build the matrices from the harmonics of a factor to the harmonics of its product with a function.
 
     Parameters
     ----------

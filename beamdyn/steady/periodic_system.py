@@ -151,7 +151,7 @@ def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
 
 
 def select_harmonics(spectrum: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """Select the harmonics `pairs`, (..., 2), of a spectrum; those that its grid does not resolve are 0."""
+    """Select the harmonics `pairs`, (..., 2), of a spectrum; 0 where its grid does not resolve one."""
     inside = (np.abs(pairs) < spectrum.shape[-1] // 2).all(axis=-1)
     j, k = np.moveaxis(np.where(inside[..., None], pairs, 0), -1, 0)
     return np.where(inside, spectrum[:, j, k], 0)

@@ -58,8 +58,8 @@ def resonance_speeds(
     The roots of lambda_i(omega) - multiple omega, and of lambda_i + lambda_j - multiple omega, are bracketed
     on the continuous loci and refined to rounding error; in addition, minima of the distance are sought
     within intervals without a change of sign, so that two close roots are both found.  Damping is neglected.
-    Modes that no term couples, such as those of two planes without twist, each meet only the lines of their
-    own loads and stiffness.
+    If no term couples two groups of modes, such as those of two planes of bending without twist, each group
+    meets only the lines of its own loads and stiffness.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ _HIGHEST_SPEED = 0.99  # largest speed at which modes of a basis are computed, r
 _MOST_MODES = 13  # largest number of modes that "auto" takes at the slowest speed, and at the fastest
 # First number of modes tried about equilibria; not small, because equilibria are solved again for each basis.
 _FIRST_ABOUT_EQUILIBRIA = 6
-# Number of speeds at which the model error is computed, in addition to that of the largest amplitude.
+# Number of speeds at which the model error is computed, in addition to the speed of the largest amplitude.
 _MOST_JUDGED = 4
 _LINEAR = "vibration about the equilibrium being linear"
 
@@ -190,7 +190,7 @@ class SteadyResponse(StatesModelError):
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speeds [rad/s] at which the model error is computed: that of the largest amplitude, and others."""
+        """Speeds [rad/s] at which the model error is computed: of the largest amplitude, and some others."""
         known = np.flatnonzero(np.isfinite(self.amplitude))
         if not len(known):
             return np.empty(0)
@@ -260,8 +260,8 @@ def steady_response(
         the tolerance.
     harmonics : int, optional
         Number of interactions with the periodic stiffness whose spectral lines are kept: 0 keeps the lines of
-        the load, 1 also those that their product with the stiffness adds, and so on.  If not given, as many
-        as the tolerance needs, up to 5.
+        the load, 1 also the lines that their product with the stiffness adds, and so on.  If not given, as
+        many as the tolerance needs, up to 5.
     tolerance : float
         Target of the truncation error of the harmonics, and with ``modes="auto"`` also the modal
         truncation error, each relative to `SteadyResponse.bound`.

@@ -318,7 +318,7 @@ class _Resonance:
     mode : int
         Index of the mode, in the harmonic (0, 0).
     harmonics : set of pair
-        Harmonics of the modes whose discs overlap that of the mode, and (0, 0).
+        Harmonics of the modes whose discs overlap the disc of this mode, and (0, 0).
     stationary : pair or None
         A harmonic h, not (0, 0), of frequency 0, if the rates are commensurate.
     """

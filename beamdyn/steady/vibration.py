@@ -308,7 +308,7 @@ def add_static(
     static : ndarray, shape (S, directions)
         Deflection in equilibrium [m].
     directions : int
-        Number of directions to keep, those of the modelled planes.
+        Number of directions to keep: one for each modelled plane of bending.
 
     Returns
     -------

@@ -95,7 +95,7 @@ def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
 def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[PossibleCrossing, ...]:
     """List the resonances that may occur in the designs: each excitation line with each mode.
 
-    The lines are those of extreme designs and of some evenly spread ones.
+    The lines are collected from extreme designs and from some evenly spread ones.
 
     Raises
     ------

@@ -81,7 +81,7 @@ def study(
         "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; for
         amplitudes, peaks, strains and power also numbers of the motion, such as "motion.road.wavelength"; and
         factors of properties that vary along the beam, such as "beam.scale.bending_stiffness".  Width,
-        thickness and material are those of a rectangular section.
+        thickness and material can be varied only for a beam of rectangular section.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"}
         The result: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
         meets each excitation line; the steady amplitude of the tip; its largest deflection in a time window

@@ -141,7 +141,7 @@ def _shapes(equations: Equations) -> np.ndarray:
 def distance_along_path(
     path: Trajectory, system: ModalSystem, larger: ModalSystem, y0: np.ndarray, y0_of_larger: np.ndarray
 ) -> float | None:
-    """Estimate the largest distance of the tip deflection from that of a larger model [m] during a run.
+    """Estimate the largest difference [m] of the tip deflections of a run and of a larger model.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """Closed form of the motion at steady speed, as a sum of exponentials, in place of many time steps.
 
-The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g
-are sums of a few harmonics.  So the motion consists of a forced part, at sums of the loads' frequencies and
-those of e, and of free vibrations exp(lambda t) times such sums (Floquet; Hill's method).  Both follow by
-iteration, because e is small.  The result is used only if it satisfies the equations to the required
-accuracy.
+The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g are
+sums of a few harmonics.  So the motion consists of a forced part and of free vibrations.  The forced part has
+the frequencies of the loads, and their sums with frequencies of e.  A free vibration is exp(lambda t) times a
+sum of harmonics at sums of the frequencies of e (Floquet; Hill's method).  Both parts follow by iteration,
+because e is small.  The result is used only if it satisfies the equations to the required accuracy.
 
 In shapes of arrays, n counts coordinates, N times or steps, s nodes in a step, and k exponents or
 frequencies.

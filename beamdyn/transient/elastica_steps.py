@@ -243,7 +243,7 @@ class _Step:
         """
         drift, middle = self.drift * v, len(self.table.c) // 2
         still = np.zeros_like(drift)
-        if self.kept is None:  # Jacobian for all nodes: that of the beam at rest, in these coordinates
+        if self.kept is None:  # the Jacobian of the beam at rest in these coordinates serves all nodes
             here = carrier.at(slice(middle, middle + 1)), q[None], still[:1], still[:1]
             tangents = self.system.tangents(*here, self.system.residual(*here))
             self.kept = tangents[:, 0], self._factorize(tangents)

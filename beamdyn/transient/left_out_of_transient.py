@@ -1,7 +1,7 @@
 """Changes of a transient's largest deflection by physical effects that its model neglects.
 
-If an effect hardly changes the lowest natural frequencies and their phase at the end of the run, the change
-of the deflection is estimated from that of the first frequency; otherwise the run is repeated with the
+If an effect hardly changes the lowest natural frequencies and their phases at the end of the run, the change
+of the deflection is estimated from the change of the first frequency; otherwise the run is repeated with the
 effect.  A run with large deflection takes far longer: it is repeated only if it is short; otherwise the
 change is estimated from the static deflection and the backbone curve (frequency over amplitude).
 """

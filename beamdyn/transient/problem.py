@@ -229,7 +229,7 @@ class TransientProblem(FieldsOnly):
         return solved and (solved.system, solved.path)
 
     def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
-        """Estimate the distance [m] of a path's tip deflection from that of a motion with more modes.
+        """Estimate the largest difference [m] between tip deflections of a path and of one with more modes.
 
         `own` are the equations of the path.  None if there are no further modes, or no valid estimate.
         """

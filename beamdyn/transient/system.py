@@ -132,9 +132,10 @@ class ModalSystem:
         return self._split(slow, self.motion.steady_start <= start, varying, excess, lines)
 
     def about_mean(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into those of the mean motion, and a varying stiffness.
+        """Split the equations from start to end [s] into mean coefficients and a small varying stiffness.
 
-        The result is None if damping or gyroscopic terms vary.
+        The mean coefficients are those for the mean of the root's motion.  The result is None if damping or
+        gyroscopic terms vary.
         """
         stiffness, damping, _ = self.equations.matrices
         if not set(damping) <= {"unity"}:

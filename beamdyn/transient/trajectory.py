@@ -219,7 +219,7 @@ def magnitude_of(deflections: np.ndarray) -> np.ndarray:
 
 
 def in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
-    """Select deflections in one direction from those in each, (..., 1 or 2); 0 if it is not modelled."""
+    """Select one direction from deflections (..., 1 or 2); return 0 if the direction is not modelled."""
     if direction >= deflections.shape[-1]:
         return np.zeros(deflections.shape[:-1])
     return deflections[..., direction]

@@ -342,8 +342,8 @@ def propagate_modulated(
     t0, t1, steps, q0, v0, stages
         As for `propagate`.
     accuracy : float
-        Largest relative error by the truncation of the series, estimated as rho^3 times the number of
-        steps, where rho is the ratio of successive terms; and by that of the Chebyshev polynomials.
+        Largest allowed relative error by truncating the series, estimated as rho^3 times the number of steps,
+        where rho is the ratio of successive terms, and by truncating the Chebyshev polynomials.
 
     Returns
     -------

@@ -35,8 +35,8 @@ def compare(
     """Compare measured values with computed ones of a scene, and find possible causes of deviations.
 
     Histories are compared with the scene's motion from rest, aligned in time within half a period of the
-    first mode at rest; peaks with those of transients up to each speed; loads with those in equilibrium, and
-    responses at the measured frequencies, both at a steady speed.
+    first mode at rest; peaks with the peaks of transients up to each speed; loads with the loads in
+    equilibrium at a steady speed; and responses with the frequency responses at a steady speed.
 
     At each speed, measured frequencies are paired with computed ones by the smallest total distance, and by
     mode shapes if these were measured.  If a deviation exceeds the sum of measurement uncertainty, numerical

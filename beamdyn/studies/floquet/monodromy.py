@@ -49,7 +49,8 @@ class Period(NamedTuple):
 def rates_of(scene: Scene) -> tuple[float, ...]:
     """Return the angular frequencies [rad/s] of the phases that the coefficients of the equations depend on.
 
-    The angle of rotation is one of them if gravity, or an acceleration of the carrier, has a fixed direction.
+    The angle of rotation is such a phase if gravity, or an acceleration of the carrier, has a fixed
+    direction.
 
     Raises
     ------

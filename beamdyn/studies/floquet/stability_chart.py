@@ -241,7 +241,8 @@ def integrate(points: Points) -> list[Monodromy]:
 def judge(points: Points) -> list[dict[str, np.ndarray]]:
     """Return the stability of each scene of a task: arrays (1,) by name, see `_verdicts`.
 
-    It is that by Floquet multipliers, or by the largest Lyapunov exponent if the motion has no period.
+    The stability follows from the Floquet multipliers, or from the largest Lyapunov exponent if the motion
+    has no period.
     """
     return [_verdict(points.scenes, numbers) for numbers in points.numbers]
 

@@ -193,8 +193,8 @@ _SLACK = 0.5  # fraction of a cell by which a polygonal curve may miss an edge t
 class LimitPoint(NamedTuple):
     """Point of a stability limit in the chart.
 
-    Position (2,) as fractions of the ranges of the two varied numbers, its error likewise, and the Floquet
-    multiplier that leaves the unit circle there.
+    Its position `place`, (2,), and the error of the position are fractions of the ranges of the two varied
+    numbers; `multiplier` is the Floquet multiplier that leaves the unit circle there.
     """
 
     place: np.ndarray

@@ -66,8 +66,8 @@ def evaluate_nearby(
 ) -> Iterator[Nearby[Evaluated]]:
     """Evaluate matrices near a number, in the widest interval of valid values, then in narrower ones.
 
-    Values are refused if `evaluate` raises an `InvalidValue`; if those on one side always are, only the other
-    side is used.
+    Values are refused if `evaluate` raises an `InvalidValue`; if all values on one side of the number are
+    refused, only values on the other side are used.
 
     Parameters
     ----------

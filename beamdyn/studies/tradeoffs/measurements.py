@@ -68,7 +68,7 @@ class Digit:
     time : float
         Time of this measurement [s].
     ratio : float
-        Ratio of the time to that of one digit less; nan for the first digit.
+        Ratio of this time to the time for one digit less; nan for the first digit.
     ties : tuple of str
         Other settings within this error whose times differ by at most twice the scatter.
     """
