@@ -84,8 +84,8 @@ class Harvest(SceneResult, JudgedByRepeating):
     status : ndarray of str, shape (S,)
         Status as in `SteadyResponse`.
     resonances : ndarray, shape (r,)
-        Speeds in the range at which the excitation is in resonance with a mode [rad/s], of the beam with
-        short-circuited layers or, for an open circuit, with open layers.
+        Speeds [rad/s], within the range of `speeds`, at which the excitation is in resonance with a mode of
+        the beam with short-circuited layers or, for an open circuit, with open layers.
     warnings : tuple of str
         Warnings about the validity and accuracy of the result, and of strains that exceed their limit.
     provenance : Provenance
@@ -187,7 +187,7 @@ class Harvest(SceneResult, JudgedByRepeating):
         return plot_harvest_panels(*given, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Return width and height of the plot of all panels [inch], with the given width, if any."""
+        """Return width and height of the plot of all panels [inch], for a given width if there is one."""
         return panel_size(len(self._panels), width)
 
     @property
@@ -367,7 +367,7 @@ def _warn_of_strain(
 
 
 def _resonances(scene: Scene, speeds: np.ndarray) -> np.ndarray:
-    """Find the speeds [rad/s] in the range at which the excitation is in resonance with a mode."""
+    """Find the speeds [rad/s], in the range of `speeds`, at which the excitation resonates with a mode."""
     top = float(np.abs(speeds).max())
     if not top:
         return np.empty(0)

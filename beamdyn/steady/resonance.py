@@ -175,7 +175,7 @@ class _UncoupledModes:
     lines : pair of list of Line
         Lines of the load (forced) and of the stiffness (parametric), up to the requested order.
     more_lines : pair of list of Line
-        The same up to the next order.
+        Lines of the load and of the stiffness up to the next order.
     """
 
     loci: _Loci
@@ -183,7 +183,7 @@ class _UncoupledModes:
     more_lines: tuple[list[Line], list[Line]]
 
     def resonances(self, order: int) -> dict[tuple[str, Line, tuple[int, ...]], None]:
-        """List kind, line and mode indices of each resonance up to an order, without repeats."""
+        """List kind, line and mode indices of each resonance up to an order, as the keys of a dictionary."""
         return dict.fromkeys(_list_resonances(*self.lines, self.loci.modes, order))
 
     def count_further(self, order: int, kind: str) -> int:

@@ -173,7 +173,7 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
 def _balance(
     sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Return the coefficients V with overdamped modes scaled: coupled equally strongly in both directions.
+    """Scale overdamped modes in the coefficients V: each acts on the others as strongly as these on it.
 
     Scaled like oscillating modes, the slowly decaying mode of a circuit with a large resistance would enlarge
     the Gershgorin discs of all other modes in proportion to that resistance.
@@ -416,7 +416,10 @@ class _Resonance:
 def _nearest_eigenvalues(
     hill: scipy.sparse.csc_array, near: complex, scale: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the eigenvalues of a sparse matrix nearest to the value `near`, and their eigenvectors."""
+    """Compute the eigenvalues of a sparse matrix nearest to the value `near`, and their eigenvectors.
+
+    The search is shifted from `near` by a small fraction of `scale`, as the matrix may be singular there.
+    """
     start = np.ones(hill.shape[0], dtype=complex)
     try:
         return eigs(hill, min(_NEAREST, hill.shape[0] - 2), sigma=near + _OFF * scale, v0=start)

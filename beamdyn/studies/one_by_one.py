@@ -103,7 +103,10 @@ def _caution(
     counts: Sequence[int],
     reasons: Sequence[tuple[str, ...]],
 ) -> Iterator[Caution]:
-    """Yield a warning with the number of results concerned, the first such design, and the reason."""
+    """Yield a warning with the number of results concerned, the first such design, and the reason.
+
+    Each design has a number of such results in `counts`; there is no warning if all these numbers are 0.
+    """
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
         at = statements.joined(

@@ -43,7 +43,8 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.sensitivities.changes import equations_near
 
-# Exponents with which each input enters mass per length, and bending, axial and second bending stiffness.
+# Powers of each input to which mass per length, and bending, axial and second bending stiffness are
+# proportional.
 POWERS = {
     "beam.width": (1, 1, 1, 3),
     "beam.thickness": (1, 3, 1, 1),

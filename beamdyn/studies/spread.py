@@ -164,12 +164,12 @@ def spread(
         Name of the result, as in `study`.
     samples : int
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
-        128 on; otherwise the next one is used.
+        128 on; for other numbers the next such power is used.
     seed : int
         Seed of the random designs.
     speed, modes, window, discretization, tolerance, workers, executor, store, progress
         As for `study`; the total number in `progress` increases by the designs of the worst cases, at most to
-        twice.
+        twice its first value.
 
     Returns
     -------
@@ -235,7 +235,7 @@ class _StudyAnswers:
 
     @property
     def first(self) -> Study:
-        """The first study."""
+        """Study of the first call."""
         return self._studies[0]
 
     def __call__(self, columns: dict[str, np.ndarray]) -> SpreadAnswers:

@@ -68,7 +68,10 @@ _CHECKED = 48  # number of steps of a segment at which the interpolation error i
 
 
 def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
-    """Build the motion of a beam that stays at rest, if its forces are in equilibrium at all times."""
+    """Build the motion of a beam that stays at rest, if its forces are in equilibrium at all times.
+
+    Return None if they are not.
+    """
     q, v = np.split(y0[None], 2, axis=1)
     if system.motion.steady_start > 0 or v.any():
         return None

@@ -98,7 +98,10 @@ class _Start(NamedTuple):
 
 
 def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
-    """Build the motion of a beam at rest, if the equations are constant and the forces in equilibrium."""
+    """Build the motion of a beam that stays at rest, if the equations are constant and forces in equilibrium.
+
+    Return None if this is not so.
+    """
     system, y0, t_end, tolerance = start
     if system.motion.steady_start > 0:
         return None

@@ -190,7 +190,7 @@ class TransientProblem(FieldsOnly):
         return basis and self._with_basis(basis)
 
     def _with_basis(self, basis: ModalBasis) -> Self:
-        """Return the problem with a larger basis, by "ritz" if the discretization has too few functions."""
+        """Return the problem with a larger basis; with "ritz" if the discretization has too few functions."""
         assert basis.modes is not None and self.basis.modes is not None
         initial = self.initial
         if not isinstance(initial, str):

@@ -50,11 +50,11 @@ class StepSize:
         return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / ERROR_ORDER))
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
-        """Count the equal steps from start to end [s]."""
+        """Count the equal steps that are needed from start to end [s]."""
         return self.count_steps_of_each(system, np.array([start, end]))[0]
 
     def count_steps_of_each(self, system: ModalSystem, ends: np.ndarray) -> list[int]:
-        """Count the equal steps of neighbouring segments with given ends [s]."""
+        """Count the equal steps that are needed in each of neighbouring segments with given ends [s]."""
         sample = system.motion.at(np.linspace(ends[:-1], ends[1:], 9, axis=1))
         speed = np.abs(sample.speed).max(axis=1)
         multiple = max((line.multiple for line in system.motion.lines), default=0.0)

@@ -214,8 +214,8 @@ class Transient(StatesModelError):
     ) -> np.ndarray:
         """Compute the deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
 
-        Direction 0 is the bending direction at the root, 1 is perpendicular to it and to the axis; in this a
-        beam with one plane is rigid.
+        Direction 0 is the bending direction at the root, 1 is perpendicular to it and to the axis: a beam
+        with one plane of bending is rigid in direction 1.
         """
         xi = np.asarray(x) / self.scene.beam.length
         return self.system.shape(self.at(t)[0], xi, direction)

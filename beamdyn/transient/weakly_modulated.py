@@ -135,7 +135,10 @@ class _StepMapSeries:
         return gauss.add_drift(gauss.increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
 
     def _parts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the maps from loads at nodes to the state at the end, and W = R - Z X0 as in the class."""
+        """Compute the maps from loads at the nodes to the state at the end of a step, and W = R - Z X0.
+
+        R, Z and X0 are explained in the class.
+        """
         P, s, n = len(self.Y), len(self.table.c), self.size
         ends = gauss.increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
         W = self.R - self.Z @ self.X0[:, None]

@@ -68,7 +68,8 @@ class LineCrossing:
 class _Root:
     """Speed at which a line meets a natural frequency, which is given by its index in ascending order.
 
-    `slope` is the derivative of their distance, both angular frequencies, with respect to the speed.
+    `slope` is the derivative, with respect to the speed, of the natural angular frequency minus that of the
+    line; `place` is the index.
     """
 
     line: Line

@@ -205,7 +205,10 @@ class _BestDesign:
         return not self._met.all()
 
     def result(self, given: np.ndarray, start: float) -> FoundDesign:
-        """Build the result of a search that started at a time of `perf_counter` [s]."""
+        """Build the result of a search that started at a time of `perf_counter` [s].
+
+        `given` are the values of the numbers in the scene.
+        """
         search, x, proofs = self.search, self.x, Proofs(self.search, self.x)
         value, error = (each[0] for each in search.known(x[None]))
         studies = [search.studied(asked, x[None]) for asked in search.asked]

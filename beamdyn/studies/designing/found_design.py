@@ -28,7 +28,8 @@ class FoundDesign(SceneResult):
     names, units : tuple of str, shape (p,)
         Names of the numbers in scene files, and their SI units.
     given, value : ndarray, shape (p,)
-        Values in the scene, nan if it has none, and in the design [unit].
+        Values in the scene, and values in the design [unit].  A value in the scene is 0 if the scene lacks
+        the number, and nan if it varies along the beam.
     low, high : ndarray, shape (p,)
         Bounds of the numbers [unit].
     targets : tuple of Target, shape (m,)

@@ -115,7 +115,10 @@ class Proofs:
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """Return the sign of each number's change that brings its result nearer to target k, or None."""
+        """Return the sign (p,) of the change of each number that brings the result nearer to target k.
+
+        None if it is not known.
+        """
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 
@@ -140,7 +143,10 @@ class Proofs:
                 yield _RuledOut(low, high, k, self._is_too_low(k, excess[i, k]))
 
     def _covered(self, parts: Sequence[_RuledOut], j: int) -> Iterator[str]:
-        """Yield reasons why one box of designs, or two that touch along number j, contain all designs."""
+        """Yield reasons why no design meets all targets: one box, or two touching boxes, contain all designs.
+
+        Two boxes touch at a value of number j.
+        """
         others = np.arange(len(self.x)) != j
         wide = [each for each in parts if not ((each.low > _AT) | (each.high < 1 - _AT))[others].any()]
         below = max(

@@ -358,7 +358,7 @@ class Search:
 
 
 def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Compute the shortest step that cancels an excess; numbers that reach their bounds stay there."""
+    """Compute the shortest step from a design x that cancels an excess to first order, within the bounds."""
     step, free = np.zeros(len(x)), np.ones(len(x), dtype=bool)
     while free.any():
         step[free] = np.linalg.lstsq(slopes[:, free], -excess - slopes[:, ~free] @ step[~free], rcond=None)[0]

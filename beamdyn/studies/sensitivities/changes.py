@@ -152,7 +152,7 @@ class PencilChange:
         return complex(s**2 * (left @ (self.M @ right)) + s * of_rate + of_stiffness)
 
     def stiffness(self, speed: float) -> np.ndarray:
-        """Compute the derivative of the stiffness at a speed [rad/s]."""
+        """Compute the derivative of the stiffness at a speed [rad/s] with respect to the number."""
         return self.K0 + speed**2 * self.K2
 
 
@@ -257,7 +257,7 @@ def critical_vector(pencil: SteadyPencil, speed: float) -> np.ndarray:
 
 
 def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, change: PencilChange) -> float:
-    """Compute the derivative of the critical speed from derivatives of the matrices."""
+    """Compute the derivative of the critical speed from the buckling shape v and those of the matrices."""
     return float(-(v @ change.stiffness(speed) @ v) / (2 * speed * (v @ pencil.K2 @ v)))
 
 
@@ -367,11 +367,11 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
 
 
 def equations_near(model: Model, scene: Scene) -> Equations:
-    """Build the equations of a scene that differs little, in a model's functions if segments agree.
+    """Build the equations of a scene that differs little from a model's scene, in nearly the same functions.
 
-    Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
-    properties of the beam, may differ abruptly after the smallest change of these; other functions follow
-    the breakpoints.
+    Matrices of nearby scenes then change smoothly.  The model's functions are used if the segments of both
+    beams agree.  Otherwise functions of bending moments are adapted to the new segments, as new ones could
+    differ abruptly after the smallest change of the beam; other functions are built for the new breakpoints.
     """
     nearby, own, other = Model(scene, model.discretization), model.scene.modelled_beam, scene.modelled_beam
     if scene.beam.matrices is not None:

@@ -131,7 +131,7 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
 
 
 def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
-    """Yield all families to measure: Ritz bases, finite elements, and the choice by a tolerance."""
+    """Yield all families to measure: Ritz bases, finite elements, and the basis chosen for a tolerance."""
     segments, bases = _segments(scene), {"legendre": _LEGENDRE, "eigenfunctions": _EIGENFUNCTIONS}
     for basis, sizes in bases.items():
         yield Family(f"Ritz, {basis}", _basis_settings(scene, speeds, modes, basis, sizes, segments))
