@@ -357,7 +357,9 @@ class _Resonance:
         return rate, error
 
     def _select(self, s: np.ndarray, z: np.ndarray, inner: int, scale: float) -> tuple[float, complex]:
-        """Select the growth rate from eigenvalues and vectors, and the start value for the next step.
+        """Select the growth rate from eigenvalues s and vectors z of Hill's matrix, and the next start value.
+
+        The start value is the exponent near which the next, larger Hill's matrix is searched for eigenvalues.
 
         Hill's matrix has copies s + i Omega_h of every exponent s, one for each harmonic h.  Copies whose
         vector is large in the outermost harmonics (rows from `inner` on) are wrong, because the neighbours of
@@ -376,8 +378,9 @@ class _Resonance:
     def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:
         """Build Hill's matrix for the harmonics within a number of interactions, and count its inner rows.
 
-        Inner rows, which come first, are those of the harmonics within one interaction fewer.  Harmonics that
-        differ by one of frequency 0 (commensurate rates) are merged; `phase` is that harmonic's phase [rad].
+        Inner rows, which come first, are those of the harmonics within one interaction fewer.  If the rates
+        are commensurate, a harmonic other than (0, 0) has the frequency 0.  Harmonics that differ by it are
+        merged; `phase` is its phase [rad].
         """
         levels = generate_harmonics(self.harmonics, self.coupling, interactions)
         inner = dict.fromkeys(self._fold(h) for level in levels[:-1] for h in level)
@@ -397,9 +400,9 @@ class _Resonance:
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
-        """Build the matrix that multiplies harmonics by a function; harmonics of equal rate are merged.
+        """Build the matrix that multiplies a function, given by its harmonics, by the function of a spectrum.
 
-        `phase` is as for `_hill_matrix`.
+        Harmonics of equal frequency are merged; `phase` is as for `_hill_matrix`.
         """
         if self.stationary is None:
             return convolution_matrix(spectrum, harmonics)[0]

@@ -383,7 +383,9 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Return where F of `beamdyn.modes.buckling`, whose sign decides on buckling, is surely positive: (N,).
+    """Mark the designs (N,) for which the form F of `beamdyn.modes.buckling` is surely positive.
+
+    Rotation then stiffens the beam against every deflection, so that it does not buckle.
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ def line_key(kind: str, line: Line) -> tuple[str, float]:
 
 
 def crossing_key(crossing: Crossing | PossibleCrossing) -> tuple[str, float, int]:
-    """Return a key that matches a crossing that was found with a possible one: kind, multiple, mode."""
+    """Return kind, multiple and mode of a crossing: a key that matches found crossings with possible ones."""
     return *line_key(crossing.kind, crossing.line), crossing.mode
 
 

@@ -105,7 +105,7 @@ def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
 
 @dataclass(frozen=True)
 class SimilarDesigns(FieldsOnly):
-    """N designs as a reference beam with different tip bodies, springs, radii, angles and speeds.
+    """N designs, represented by one beam with different tip bodies, springs, radii, angles and speeds.
 
     Parameters
     ----------

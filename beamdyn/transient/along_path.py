@@ -192,7 +192,8 @@ def distance_along_path(
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     """Estimate the tip's amplitude [m] of fast modes, excited by jumps of the load's slope at samples.
 
-    Only modes that are too fast for the run's samples count; their contributions are added as random numbers.
+    Only modes that are too fast for the run's samples count; the contributions of all
+    samples to a mode are added as random numbers are, by their squares.
 
     A change of the load's slope excites a mode of angular frequency w with the amplitude change / w^3.  A
     sudden jump of the load between two samples, a time h apart, looks like a slope jump / h, but excites a

@@ -154,5 +154,5 @@ def transient_harvest(run: Transient) -> TransientHarvest:
 
 
 def _at(row: Voltage, run: Transient, t: np.ndarray) -> np.ndarray:
-    """Evaluate the quantity of the circuit given by the coefficients `row` at times t [s]."""
+    """Evaluate a quantity of the circuit, such as its voltage, with the coefficients `row` at times t [s]."""
     return run.path.at(t)[row.order] @ row.row

@@ -271,7 +271,7 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
 def _equilibrium(system: ModalSystem) -> np.ndarray:
     """Compute the static equilibrium under the loads at time 0; a ValueError if the root turns freely.
 
-    A circuit is without voltage there, and the flux, its last coordinate, begins at 0.
+    In this equilibrium a circuit has no voltage; its flux, the last coordinate, begins at 0.
     """
     _, K, f = system.coefficients(np.zeros(()))
     bent, found = slice(len(f) - (system.equations.voltage is not None)), np.zeros_like(f)

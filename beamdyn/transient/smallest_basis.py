@@ -103,7 +103,7 @@ def list_samples(speeds: tuple[float, ...]) -> list[float]:
 
 @one_blas_thread()
 def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
-    """Run sampled cases with enough modes; each search starts one mode below the number of the last case.
+    """Run sampled cases with enough modes; each search starts with one mode fewer than the last case has.
 
     If some cases use modes at their speeds and others modes at rest, all are run with one kind: modes at rest
     if these meet the tolerance with fewer coordinates, else modes at the speeds if these meet it, else the

@@ -74,8 +74,8 @@ class ModalSystem:
     def from_rest(cls, equations: Equations, motion: Motion, t_end: float) -> ModalSystem:
         """Build the equations of a run from rest, without coordinates that no load excites.
 
-        Planes without loads and coupling are omitted; loads are sampled over the run and each smooth
-        interval.
+        Planes of bending without loads and coupling are omitted.  Whether a load is 0 is decided from samples
+        over the run, and in each interval in which the motion is smooth.
         """
         if len(equations.connected) > 1:
             spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)

@@ -187,9 +187,11 @@ def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
 
 
 def _total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
-    """Bound each coordinate's error after some steps by local errors and the largest phase error of a step.
+    """Bound the error of each coordinate after a number of steps.
 
-    The bound is the sum of all local errors, or of the largest ones until the phase is lost, if that is less.
+    Local errors add up until the phase of a coordinate is lost, after 2 / delta steps, where delta [rad] is
+    its largest phase error per step.  The bound is the sum of all local errors or, if this is less, the
+    largest local error times 2 / delta.
     """
     until_lost = 2 / np.maximum(delta, 1e-30)  # number of steps until the phase is lost
     return np.minimum(steps * local.mean(axis=0), until_lost * local.max(axis=0))

@@ -147,7 +147,7 @@ class _StepMapSeries:
     def first(self) -> np.ndarray:
         """Compute the terms of first order in the stiffness factors in the maps to the end of a step.
 
-        There is one for each factor and node (second axis).
+        There is one term for each factor and node, along the second axis.
         """
         ends, W = self._parts()
         found = ends[:, None] @ W
@@ -260,7 +260,7 @@ class _Block:
         return chebyshev.polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
-        """Compute maps of steps from the polynomials' values T at their starts, and from their factors e."""
+        """Compute maps of steps from the polynomials' values T at the steps' starts, and from factors e."""
         rows, columns = self.maps[0].shape[2:]
         # One sum for each precision: terms for which single precision suffices are summed in it.
         sums: dict[np.dtype, np.ndarray] = {}

@@ -82,7 +82,9 @@ class OneNumberFit:
 
 
 def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple[OneNumberFit, ...]:
-    """Fit each number alone to all data; order the fits: explanations first, then by remaining deviation.
+    """Fit each number alone to all data; return the fits that explain the data first, then the others.
+
+    In both groups the fits are in order of their remaining deviation.
 
     Parameters
     ----------

@@ -373,7 +373,7 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
 
 
 def _name_modes(locus: Locus) -> tuple[str, ...]:
-    """Name the modes by the direction in which each mostly bends at the first speed, or by its kind."""
+    """Name each mode by the direction in which it mostly bends at the first speed, or by another kind."""
     words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
     # With a negative cosine, the beam points outward, like a blade.
     is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0

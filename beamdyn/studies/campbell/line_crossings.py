@@ -192,7 +192,7 @@ def _node(locus: Locus, speed: float) -> int:
 
 
 def _tracked_mode(locus: Locus, root: _Root, omega: float) -> int | None:
-    """Return the tracked mode whose frequency the line meets at a root; None if no tracked mode does."""
+    """Return the index of the tracked mode whose frequency a line meets at a root; None if there is none."""
     node = _node(locus, root.speed)
     ends, tracked = locus.speeds[node : node + 2], np.abs(np.imag(locus.eigenvalue[node : node + 2]))
     modes = np.flatnonzero((locus.place[node : node + 2] == root.place).any(axis=0))

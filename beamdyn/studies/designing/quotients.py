@@ -51,7 +51,7 @@ def ways(scene: Scene, what: str) -> dict[str, int]:
     """Find which numbers increase (1), decrease (-1) or do not change (0) the quotient for all deflections.
 
     This holds for any values of the other numbers, as long as the scene meets the conditions checked here.
-    They are linear in each number: if they hold at all corners of the bounds, they hold within.
+    The conditions are linear in each number, so that they hold within bounds if they hold at all corners.
 
     Parameters
     ----------

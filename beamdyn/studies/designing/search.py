@@ -52,7 +52,9 @@ class Spent(Exception):
 
 @dataclass(frozen=True)
 class Ranges:
-    """Numbers of a scene as fractions 0 to 1 between bounds; of logarithms if both bounds are positive.
+    """Numbers of a scene as fractions, 0 to 1, of the ranges between their bounds.
+
+    The fractions are of logarithms if both bounds are positive.
 
     Parameters
     ----------

@@ -234,9 +234,10 @@ def _fine_enough(B: np.ndarray) -> np.ndarray | None:
 
 
 def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
-    """Return a number of periods whose ends sample the slower phase all around, and harmonics at the ends.
+    """Return a number of periods whose ends sample the slower phase all around the circle.
 
-    The harmonics -most to most are in columns; the slower phase advances by `alpha` [rad] in each period.
+    Return also the harmonics -most to most (columns) of the slower phase at the ends of these periods; the
+    slower phase advances by `alpha` [rad] in each period.
     """
     count = min(3 * (2 * most + 1), _PERIODS)
     while True:

@@ -252,7 +252,7 @@ class LimitTracer:
         return self._known[place.tobytes()]
 
     def _beyond(self, place: np.ndarray) -> float:
-        """Compute the function whose roots are limits, at a position (2,): positive for unstable motion."""
+        """Compute a function that is 0 on the limits and positive for unstable motion, at a position (2,)."""
         found = self._multipliers(place)
         largest = float(found.size[0, 0])
         if found.sign is None:

@@ -46,7 +46,7 @@ class Nearby(Generic[Evaluated]):
     Parameters
     ----------
     values : list
-        Matrices for `PLACES` values of the number.
+        Matrices for eight (`PLACES`) values of the number.
     weights : ndarray, shape (PLACES,)
         Weights of the matrices in the derivative [1 / unit of the number].
     last : ndarray, shape (PLACES,)
@@ -182,7 +182,7 @@ class PerturbedModes:
     def of(
         cls, pencil: SteadyPencil, speed: float, eigenvalue: np.ndarray, right: np.ndarray
     ) -> PerturbedModes:
-        """Make the perturbed modes from eigenvalues and right eigenvectors; compute the left eigenvectors."""
+        """Build the modes from eigenvalues and right eigenvectors; the left eigenvectors are computed."""
         left = [_left(pencil, speed, s, v) for s, v in zip(eigenvalue, right.T, strict=True)]
         return cls(pencil, speed, eigenvalue, right, np.array(left).T)
 
@@ -342,7 +342,7 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
 
 
 def _last(nearby: Nearby[_Pencils]) -> PencilChange:
-    """Compute the last terms of the polynomials of the matrices: small if the polynomials resolve them."""
+    """Compute the last terms of the matrices' polynomials: they are small if these resolve the matrices."""
     return PencilChange.of([fine for fine, _ in nearby.values], nearby.last)
 
 

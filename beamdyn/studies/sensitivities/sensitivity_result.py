@@ -177,8 +177,8 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
     """Describe the input at a path, with the step for its derivative.
 
     The step is 1 % of the value or, if larger, of a typical magnitude, such as the beam's length; 0.01 for
-    angles [rad] and Poisson's ratio; for positions of point masses and springs, the result of
-    `_room_of`.
+    angles [rad] and Poisson's ratio; for positions of point masses and springs, the distance that
+    `_room_of` returns.
     """
     unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
     if unit == "rad" or path == "beam.poissons_ratio":
@@ -284,9 +284,10 @@ class Sensitivities(SceneResult, JudgedByRepeating):
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Return the derivative of each result by its most important number, for the model error: shape (k,).
+        """Return the derivatives, shape (k,), whose model error is stated, from the result `found`.
 
-        The derivatives are those of `found`, the analysis of another scene; nan where it lacks the result.
+        Each is the derivative of a result with respect to its most important number.  `found` is the analysis
+        of another scene; the derivative is nan where it lacks the result.
         """
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)

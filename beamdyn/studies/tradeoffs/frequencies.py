@@ -45,9 +45,9 @@ _RESOLVED = 1e-10  # relative error below which a reference is accurate enough
 def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 10.0) -> Diagram:
     """Measure error against computing time of the natural frequencies at one or several speeds.
 
-    The time of a basis is that for matrices and eigenvalues; extrapolated finite elements are solved twice,
-    the second time with half the elements; for ``tolerance=`` it is the time of the whole call, which also
-    chooses the basis and estimates the error.
+    The time of a basis is the time for matrices and eigenvalues; extrapolated finite elements are solved
+    twice, the second time with half the elements; for ``tolerance=`` it is the time of the whole call, which
+    also chooses the basis and estimates the error.
 
     Parameters
     ----------
