@@ -12,11 +12,11 @@ few quantities.  In one plane of bending they are linear in the mass of the body
 about the axis of bending, in (J_e - J_1)/J_n with its transverse and axial moments of inertia J_e and J_1, in
 r cos(phi) of radius and setting angle, in the squared cosine of the bending angle and in the spring,
 quadratic in the offset.  In two planes they are linear in the moments of inertia, in the springs, and in the
-stiffness in the second direction over that in the first, and they are combinations of 1, cos(2 psi) and sin(2
-psi) of the bending angle psi.  The matrices are interpolated between the extremes of all designs.  Every
-combination of extremes must be a valid scene, but a moment of inertia could then exceed the sum of the other
-two.  So the tip body's second moments of mass are combined instead: moments of inertia are sums of two of
-them, and any nonnegative values belong to a possible body.
+stiffness in the second direction over that in the first, and they are combinations of 1, cos(2 psi) and
+sin(2 psi) of the bending angle psi.  The matrices are interpolated between the extremes of all designs.
+Every combination of extremes must be a valid scene, but a moment of inertia could then exceed the sum of the
+other two.  So the tip body's second moments of mass are combined instead: moments of inertia are sums of two
+of them, and any nonnegative values belong to a possible body.
 
 In shapes of arrays, N counts designs, S speeds, R selected designs, and T scenes at combinations of extremes.
 """

@@ -192,8 +192,8 @@ def distance_along_path(
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     """Estimate the tip's amplitude [m] of fast modes, excited by jumps of the load's slope at samples.
 
-    Only modes that are too fast for the run's samples count; the contributions of all
-    samples to a mode are added as random numbers are, by their squares.
+    Only modes that are too fast for the run's samples count.  The contributions of all samples to a mode are
+    added as random numbers are, by their squares.
 
     A change of the load's slope excites a mode of angular frequency w with the amplitude change / w^3.  A
     sudden jump of the load between two samples, a time h apart, looks like a slope jump / h, but excites a
@@ -221,7 +221,7 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """Difference e of the larger model's motion in a stretch: its largest value at the tip [m], and its end.
+    """Difference e from the larger model in a stretch: its largest value at the tip [m], and its last value.
 
     `e` and `rate` are the difference and its time derivative, in coordinates, at the end of the stretch.
 

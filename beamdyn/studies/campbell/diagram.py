@@ -373,7 +373,10 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
 
 
 def _name_modes(locus: Locus) -> tuple[str, ...]:
-    """Name each mode by the direction in which it mostly bends at the first speed, or by another kind."""
+    """Name each mode by the direction in which it mostly bends at the first speed.
+
+    A mode that is not one of bending is named by its kind, such as torsion.
+    """
     words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
     # With a negative cosine, the beam points outward, like a blade.
     is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0

@@ -189,7 +189,7 @@ class Proofs:
         return Words(f"{said}the least factor by ", least.says, apart, most.says)
 
     def _in_the_bounds(self) -> _Limits:
-        """Return the range, over all designs within the bounds, of their factor to the results of `x`."""
+        """Return the range of the factor from the results of `x` to those of any design in the bounds."""
         ranges = self.search.ranges
         corners = [*Designs(ranges.inputs).extremes()]
         columns = {name: np.array([each[name] for each in corners]) for name in self._names}
@@ -198,7 +198,7 @@ class Proofs:
         return _Limits("the bounds", float(factors.min()) - _EXACT, float(factors.max()) + _EXACT)
 
     def _by_targets(self) -> Iterator[_Limits]:
-        """Yield, for each target, the range of factors with which its result meets it, within its error."""
+        """Yield the range of factors with which the results meet each target, within the results' errors."""
         value, error = (each[0] for each in self.search.known(self.x[None]))
         for target, own, of_own in zip(self.search.targets, value.tolist(), error.tolist(), strict=True):
             # Frequencies at rest of similar designs differ only by the factor.  Critical speeds do so only if

@@ -257,7 +257,10 @@ def critical_vector(pencil: SteadyPencil, speed: float) -> np.ndarray:
 
 
 def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, change: PencilChange) -> float:
-    """Compute the derivative of the critical speed from the buckling shape v and those of the matrices."""
+    """Compute the derivative of the critical speed, at which the beam buckles in the shape v.
+
+    `change` has the derivatives of the matrices.
+    """
     return float(-(v @ change.stiffness(speed) @ v) / (2 * speed * (v @ pencil.K2 @ v)))
 
 
