@@ -7,8 +7,8 @@ not matter: the solution covers every phase difference at once.
 The equations determine which harmonics are kept: those of the load, then those that are added when these are
 multiplied by the periodic coefficients (an interaction) once, twice, and so on.
 
-They are solved as a series, whose terms add one interaction each.  In the modes of the mean equations,
-without damping, there is one equation for each harmonic h of each mode a:
+The equations are solved as a series, whose terms add one interaction each.  In the undamped modes of the mean
+equations, there is one equation for each harmonic h of each mode a:
 
     (k_a - Omega_h^2 + i Omega_h c_aa) y_ha = f_ha - (terms that couple it with other harmonics and modes)
 
@@ -30,12 +30,12 @@ import numpy as np
 
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, list_harmonics, select_harmonics
 
-_MOST_ENTRIES = 10**7  # number of matrix entries in memory when equations are solved: 80 MB
+_MOST_ENTRIES = 10**7  # largest number of matrix entries solved as one batch: 80 MB
 # Largest number of terms of the series: enough to converge if each term divides the error by 20.
 _MOST_TERMS = 12
 _SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
-# Smallest fraction of pairs of phase rates that have converged for which the arrays are copied without these
-# pairs: copying takes time, too.
+# Pairs of phase rates that have converged are removed from the arrays only if they are at least this fraction
+# of the pairs in them: the arrays are copied for this, which takes time, too.
 _WORTH_LEAVING_OUT = 0.25
 
 
@@ -82,7 +82,7 @@ def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarr
 
 
 def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: Pair = (0, 0)) -> np.ndarray:
-    """Build the matrices that convert the harmonics of a factor to those of its product with a function.
+    """Build the matrices from the harmonics of a factor to the harmonics of its product with a function.
 
     Parameters
     ----------
@@ -102,7 +102,10 @@ def convolution_matrix(spectrum: np.ndarray, harmonics: Sequence[Pair], shift: P
 
 
 def _real_basis(harmonics: Sequence[Pair]) -> np.ndarray:
-    """Build the unitary matrix T that turns cosine and sine parts of pairs h, -h into complex harmonics."""
+    """Build the unitary matrix T, shape (H, H), from cosine and sine parts to complex harmonics.
+
+    Each pair of opposite harmonics h, -h has one cosine part and one sine part, in the places of h and -h.
+    """
     index = {h: i for i, h in enumerate(harmonics)}
     T = np.zeros((len(index), len(index)), dtype=complex)
     for h, i in index.items():
@@ -151,9 +154,11 @@ def _assemble(
 
 
 def _add_products(A: np.ndarray, factors: np.ndarray, matrices: np.ndarray) -> None:
-    """Add matrices (S, n, n) to the blocks of A, (S, H, n, H, n), times a factor for each pair of harmonics.
+    """Add products of factors and matrices to the blocks of A, in place.
 
-    Most of the factors (S, H, H) are 0.
+    The block of two harmonics is A[:, g, :, h] in the array A of shape (S, H, n, H, n).  The product of
+    `factors`[:, g, h], shape (S,), and of the matrices, shape (S, n, n), is added to it.  Pairs of harmonics
+    whose factors are 0, which are most of them, are skipped.
     """
     row, column = np.nonzero(factors.any(axis=0))
     A[:, row, :, column] += factors[:, row, column].T[..., None, None] * matrices
@@ -181,13 +186,13 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     """
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
-    if system.is_free(np.array(harmonics)).any():  # a coordinate without stiffness has no static compliance
+    if system.is_free(np.array(harmonics)).any():  # without stiffness a static response is infinite
         return response, settled
     try:
         mean = MeanModes.of_system(system)
     except np.linalg.LinAlgError:
         return response, settled
-    half = [h for h in harmonics if h >= (0, 0)]  # harmonics -h of the response are complex conjugates
+    half = [h for h in harmonics if h >= (0, 0)]  # the harmonics -h are the conjugates of these
     with np.errstate(all="ignore"):  # the series may diverge, or a harmonic may be in resonance
         series = _Series.of_system(system, mean, half)
         y = series.load * series.compliance
@@ -244,9 +249,10 @@ class _Products:
     def of(
         cls, order: int, spectrum: np.ndarray, matrix: np.ndarray, mean: MeanModes, harmonics: list[Pair]
     ) -> _Products:
-        """Build the products of a periodic coefficient, given by spectrum and matrices, with the response.
+        """Build the products of a response of given harmonics with one periodic coefficient.
 
-        The response has the given harmonics, of which none is the opposite of another.
+        `spectrum` has the harmonics of the coefficient; `matrix`, (S, n, n), is transformed to the modes
+        `mean`.  None of the harmonics of the response is the opposite of another.
         """
         index = {h: i for i, h in enumerate(harmonics)}
         for (j, k), i in tuple(index.items()):
@@ -315,9 +321,6 @@ class _Series:
             in_modes = np.einsum("snm,sn->ms", mean.shapes, vector)
             load += select_harmonics(spectrum, h).T[:, None] * in_modes
         products = tuple(_Products.of(*each, mean, harmonics) for each in system.varying)
-        if system.is_free(h).any():  # a circuit's flux has no stiffness: its static part is set to 0
-            still = np.abs(mean.squared.T) <= _SETTLED * np.abs(mean.squared).max(axis=1)
-            resistance = np.where(still & (rate == 0), np.inf, resistance)
         return cls(load, 1 / resistance, rate, damping, products)
 
     def __getitem__(self, chosen: np.ndarray) -> _Series:
@@ -327,7 +330,7 @@ class _Series:
         return _Series(load, compliance, rate, damping, products)
 
     def respond(self, y: np.ndarray) -> np.ndarray:
-        """Compute the response to the load and to the coupling terms, which the last response y gives."""
+        """Compute the next iterate of the response (H, n, S), with coupling terms from the last iterate y."""
         force, both = self.load.copy(), np.concatenate([y, y.conj()])
         for products in self.products:
             of_rate = np.concatenate([self.rate, -self.rate]) if products.order else 1.0

@@ -42,12 +42,11 @@ from beamdyn.steady.response import ResponseRequest, steady_response
 from beamdyn.steady.road_harvest import SEVERAL, RoadHarvest, check_road, harvest_on_road
 from beamdyn.steady.vibration import combine_pairs, solve_parts, vibration_of
 
-# Ratio of the estimated error to the largest difference from responses with more modes, and number of these
-# responses: voltages of electrodes that end within the span converge irregularly, so that two responses may
-# agree by chance.
+# The estimated error is 2 times the largest difference from three responses with more modes.  With electrodes
+# that end within the span, voltages converge irregularly: two responses could agree by chance.
 _DISTANCE, _LARGER = 2.0, 3
 _RESONANT = 3  # number of modes whose resonances are listed
-_COMPARED = "with more modes, and without the harmonics that the last product with the stiffness adds"
+_COMPARED = "responses with more modes; fewer harmonics, without the last product with the varying stiffness"
 _POWER = "mean power [W]"
 
 
@@ -85,8 +84,8 @@ class Harvest(SceneResult, JudgedByRepeating):
     status : ndarray of str, shape (S,)
         Status as in `SteadyResponse`.
     resonances : ndarray, shape (r,)
-        Speeds in the range at which the excitation is in resonance with a mode [rad/s], of the beam with
-        short-circuited layers or, for an open circuit, with open layers.
+        Speeds [rad/s], within the range of `speeds`, at which the excitation is in resonance with a mode of
+        the beam with short-circuited layers or, for an open circuit, with open layers.
     warnings : tuple of str
         Warnings about the validity and accuracy of the result, and of strains that exceed their limit.
     provenance : Provenance
@@ -161,12 +160,12 @@ class Harvest(SceneResult, JudgedByRepeating):
         return electrodes_of(self.scene).harvester.strain_limit
 
     def judged(self, found: Harvest) -> np.ndarray:
-        """Return the largest power of the result `found`, for which the model error is stated: shape ()."""
+        """Return the largest power of the result `found`, shape (): the value whose model error is stated."""
         return np.array(found.best[1])
 
     @property
     def as_far_as_judged(self) -> Mapping[str, Any]:
-        """Arguments for repeating the analysis for the model error, without numerical errors of the power."""
+        """Arguments with which the model error repeats the analysis: numerical errors are not estimated."""
         return {"compared": False}
 
     @property
@@ -188,7 +187,7 @@ class Harvest(SceneResult, JudgedByRepeating):
         return plot_harvest_panels(*given, ax)
 
     def picture_size(self, width: float | None = None) -> tuple[float, float]:
-        """Return width and height of the plot of all panels [inch], with the given width, if any."""
+        """Return width and height of the plot of all panels [inch], for a given width if there is one."""
         return panel_size(len(self._panels), width)
 
     @property
@@ -278,7 +277,7 @@ def harvested(
     start = perf_counter()
     powers = _powers(scene, speeds, modes, tolerance, discretization, road, compared)
     resonances = _resonances(powers.scene, powers.speeds)
-    # The computing time includes that of the resonances.
+    # The provenance is built again, so that the computing time includes the search for resonances.
     provenance = Provenance.since(start, powers.provenance.method, _COMPARED)
     found = replace(powers, resonances=resonances, provenance=provenance)
     vars(found)["again"] = powers.again  # the model error repeats the powers only, without resonances
@@ -335,7 +334,10 @@ def _powers(
 
 
 def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
-    """Yield up to three requests, each with 1.5 times as many modes as the last, if the models exist."""
+    """Yield up to three requests, each with 1.5 times as many modes as the one before.
+
+    There are fewer if the discretization has no model with so many modes.
+    """
     for _ in range(_LARGER):
         if (finer := request.refined()) is None:
             return
@@ -365,7 +367,7 @@ def _warn_of_strain(
 
 
 def _resonances(scene: Scene, speeds: np.ndarray) -> np.ndarray:
-    """Find the speeds [rad/s] in the range at which the excitation is in resonance with a mode."""
+    """Find the speeds [rad/s], in the range of `speeds`, at which the excitation resonates with a mode."""
     top = float(np.abs(speeds).max())
     if not top:
         return np.empty(0)
@@ -404,7 +406,7 @@ class ElectricLines:
 
     @classmethod
     def of(cls, request: ResponseRequest) -> ElectricLines:
-        """Solve for all coordinates of a request's modal basis."""
+        """Compute the lines of the steady response that a request asks for."""
         equations = request.model.modal_equations(request.basis)
         motion = check_steady_state(request.scene.motion)
         vibration = vibration_of(request.model, request.basis, motion, request.speeds)
@@ -412,7 +414,7 @@ class ElectricLines:
 
     @classmethod
     def of_resistances(cls, request: ResponseRequest, resistances: np.ndarray) -> ElectricLines:
-        """Solve for S load resistances [ohm] in place of S speeds, at the one speed of a request."""
+        """Compute the lines for S load resistances [ohm] in place of S speeds, at a request's first speed."""
         mechanical = reduce_to_modes(request.model.equations, request.basis)
         assert mechanical.circuit is not None, "the beam has a load"
         circuits = (replace(mechanical.circuit, resistance=each) for each in resistances.tolist())
@@ -430,9 +432,9 @@ class ElectricLines:
         equations: Equations,
         parts: list[tuple[PeriodicSystem, np.ndarray]],
     ) -> ElectricLines:
-        """Solve for all coordinates at S speeds.
+        """Compute the lines at S speeds from the equations, given in uncoupled parts.
 
-        The equations are given in uncoupled `parts`, each with the indices of its coordinates.
+        Each of the `parts` has the indices of its coordinates.
         """
         motion = check_steady_state(request.scene.motion)
         every = np.broadcast_to(np.eye(equations.size), (len(speeds), equations.size, equations.size))
@@ -477,7 +479,7 @@ class HarvestedPowers:
 
     @classmethod
     def of(cls, request: ResponseRequest) -> HarvestedPowers:
-        """Solve all coordinates of a request's modal basis, and compute powers and largest values."""
+        """Compute the steady response that a request asks for, and from it powers and largest values."""
         lines = ElectricLines.of(request)
         equations, pairs, q, velocity = lines.equations, lines.pairs, lines.coordinates, lines.velocity
         C = equations.matrices[1].get("unity", np.zeros((equations.size, equations.size)))

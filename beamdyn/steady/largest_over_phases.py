@@ -14,7 +14,8 @@ _MAXIMA = 16  # number of largest local maxima of the samples that are refined
 _LEAST_SAMPLE = 0.5  # samples below this fraction of the largest are not near the maximum (Riesz' inequality)
 _MOST_STEPS = 20  # largest number of Newton's steps; more than a few are needed only near a saddle
 _CONVERGED = 1e-15  # relative increase by one step below which the maximum has converged
-# Largest sum of the weak lines, relative to the sum of all lines: they shift maxima, but hardly add any.
+# Lines count as weak if their sum is at most this fraction of the sum of all lines: weak lines shift maxima,
+# but hardly add any.
 _WEAK = 0.02
 # Offset of the samples, in spacings of samples: symmetric sums have saddles at multiples of the spacing.
 _OFFSET = np.array([0.21, 0.37])
@@ -41,8 +42,8 @@ def largest_over_phases(amplitude: np.ndarray, harmonics: np.ndarray) -> np.ndar
     size = np.abs(amplitude).sum(axis=1) * harmonics.any(axis=1)
     # Over the plane of both phases each line is a wave.  Waves with proportional harmonics are parallel;
     # others cross.  The strongest wave is constant along its crests, so that the waves that cross it decide
-    # where on a crest the maximum is, however weak they are.  So lines are also strong in comparison with
-    # these waves.
+    # where on a crest the maximum is, however weak they are.  So a line counts as strong if it is large in
+    # comparison with all lines, or only with the lines that cross the strongest one.
     j, k = harmonics.T
     crossing = (np.multiply.outer(j, k) != np.multiply.outer(k, j)).astype(float)
     others, share = size * crossing[size.argmax(axis=1)], _WEAK / len(harmonics)
@@ -127,9 +128,11 @@ def _ascent_step(value: np.ndarray, slope: np.ndarray, curvature: np.ndarray, lo
 def _evaluate_size(
     a: np.ndarray, h: np.ndarray, phases: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Evaluate the magnitude of sums of lines, with the sign of the first component, and its derivatives.
+    """Evaluate the signed magnitude of vectors that are sums of lines, and its derivatives.
 
-    The derivatives are the gradient and the second derivatives with respect to the two phases.
+    The magnitude has the sign of the vector's first component.  Return it with its gradient and second
+    derivatives with respect to the two phases: shapes (sums,), (sums, 2) and (sums, 2, 2).  The arguments are
+    those of `_evaluate`.
     """
     u, slope, curvature = _evaluate(a, h, phases)
     if u.shape[1] == 1:

@@ -82,7 +82,7 @@ class PeriodicSystem:
 
     @cached_property
     def without_stiffness(self) -> np.ndarray:
-        """Whether each coordinate has no stiffness: only its rate matters, as of a circuit's flux."""
+        """Whether each coordinate has no stiffness, so that only its rate acts, as with a circuit's flux."""
         stiff = self.mean[0].any(axis=(0, 1))
         for order, _, matrix in self.varying:
             stiff = stiff | (matrix.any(axis=(0, 1)) & (order == 0))
@@ -152,7 +152,7 @@ def list_harmonics(spectrum: np.ndarray) -> set[Pair]:
 
 
 def select_harmonics(spectrum: np.ndarray, pairs: np.ndarray) -> np.ndarray:
-    """Select the harmonics `pairs`, (..., 2), of a spectrum; those that its grid does not resolve are 0."""
+    """Select the harmonics `pairs`, (..., 2), of a spectrum; 0 where its grid does not resolve one."""
     inside = (np.abs(pairs) < spectrum.shape[-1] // 2).all(axis=-1)
     j, k = np.moveaxis(np.where(inside[..., None], pairs, 0), -1, 0)
     return np.where(inside, spectrum[:, j, k], 0)
@@ -200,7 +200,8 @@ def periodic_system(
     Parameters
     ----------
     equations : Equations, or sequence of them, length S
-        Equations of motion, or one set for each speed with the same terms, such as about equilibria.
+        Equations of motion for all speeds; or one set of equations for each speed, all with the same terms,
+        as for vibration about the equilibrium at each speed.
     motion : Motion or None
         A motion with `steady_acceleration` and `road_multiple`; None for rotation about a fixed centre.
     speeds : ndarray, shape (S,)
@@ -300,7 +301,7 @@ def expand_quantities(
         carrier = motion.steady_acceleration(omega, angle, road)
         root = equations.root(MotionSample(angle, omega, np.zeros(omega.shape), carrier))
         spectra = {name: _fourier_coefficients(getattr(root, name)) for name in used}
-        # Higher half of the harmonics that the grid of samples resolves.
+        # The grid is fine enough if the higher half of the harmonics that it resolves is 0.
         high = np.minimum(np.arange(N), N - np.arange(N)) > N // 4
         if not any(each[:, high].any() or each[:, :, high].any() for each in spectra.values()):
             return spectra
@@ -335,8 +336,8 @@ def excitation_lines(
     motion : Motion or None
         The motion, which names the lines.
     order : int
-        Order of the lines: 1 for the lines of the load and of the stiffness; n also for those that up to n -
-        1 products of these with the periodic stiffness add.
+        1: the lines of the load and of the stiffness; n: also the lines that arise when these are multiplied
+        by the periodic stiffness up to n - 1 times.
 
     Returns
     -------

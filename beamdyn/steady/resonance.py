@@ -36,8 +36,8 @@ from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, per
 
 _HIGHEST_ORDER = 20  # highest accepted order of lines, whose search takes ten seconds
 _NODES = 400  # number of intervals of speed in which roots are bracketed
-# Number of these intervals with large deflection: fewer, as an equilibrium is solved at each speed, and as
-# the loci are smooth.
+# Number of intervals of speed for a beam with large deflection: fewer than for a straight beam, as an
+# equilibrium is solved at each speed, and as the loci are smooth.
 _BENT_NODES = 100
 # Number of modes solved in addition to the requested ones: with speed, modes of other uncoupled parts of the
 # equations may become lower than these.
@@ -58,8 +58,8 @@ def resonance_speeds(
     The roots of lambda_i(omega) - multiple omega, and of lambda_i + lambda_j - multiple omega, are bracketed
     on the continuous loci and refined to rounding error; in addition, minima of the distance are sought
     within intervals without a change of sign, so that two close roots are both found.  Damping is neglected.
-    Modes that no term couples, such as those of two planes without twist, each meet only the lines of their
-    own loads and stiffness.
+    If no term couples two groups of modes, such as those of two planes of bending without twist, each group
+    meets only the lines of its own loads and stiffness.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def resonance_speeds(
     modes, order = count("modes", modes), count("order", order, most=_HIGHEST_ORDER)
     scene = choose_physics(scene.undamped, [0.0, top], modes, tolerance)
     model = model_to_tolerance(scene, discretization, ends := np.array([0.0, top]), modes, tolerance)
-    sprung = discretization == "fem" and model.equations.shift  # elements may not resolve springs at the root
+    sprung = discretization == "fem" and model.equations.shift  # "fem" may not resolve root springs
     if sprung and not np.isfinite(solve_with_error(model, ends, modes).error).all():
         model = choose_model(scene, "ritz", ends, modes)
     critical = model.solver.critical_speed
@@ -146,7 +146,7 @@ def resonance_speeds(
 
 
 def _check_stiffness(scene: Scene, critical: float) -> None:
-    """Raise an error if the beam turns over about its root at any speed above 0."""
+    """Raise an error if the critical speed is 0: the beam then turns over about its root at any speed."""
     if critical > 0:
         return
     in_plane = np.abs([np.cos(scene.mount.bending_angle), np.sin(scene.mount.bending_angle)])
@@ -158,7 +158,7 @@ def _check_stiffness(scene: Scene, critical: float) -> None:
         if spring
         else (
             "the beam is unstable at any speed, and does not vibrate",
-            "give the hinge a spring, or a beam that points outward",
+            "give the hinge a spring, or let the beam point outward",
         )
     )
     raise InvalidValue(f"mount.{name}", spring, bound, remedy, "N m/rad")
@@ -175,7 +175,7 @@ class _UncoupledModes:
     lines : pair of list of Line
         Lines of the load (forced) and of the stiffness (parametric), up to the requested order.
     more_lines : pair of list of Line
-        The same up to the next order.
+        Lines of the load and of the stiffness up to the next order.
     """
 
     loci: _Loci
@@ -183,7 +183,7 @@ class _UncoupledModes:
     more_lines: tuple[list[Line], list[Line]]
 
     def resonances(self, order: int) -> dict[tuple[str, Line, tuple[int, ...]], None]:
-        """List kind, line and mode indices of each resonance up to an order, without repeats."""
+        """List kind, line and mode indices of each resonance up to an order, as the keys of a dictionary."""
         return dict.fromkeys(_list_resonances(*self.lines, self.loci.modes, order))
 
     def count_further(self, order: int, kind: str) -> int:
@@ -196,7 +196,11 @@ class _UncoupledModes:
 def _list_resonances(
     forced: list[Line], parametric: list[Line], modes: int, order: int
 ) -> list[tuple[str, Line, tuple[int, ...]]]:
-    """List kind, line and mode indices of each resonance up to an order."""
+    """List kind, line and mode indices of each resonance up to an order.
+
+    A "forced" resonance has the index of one mode; a "parametric" one has those of the two modes whose
+    frequencies are added, which may be the same.
+    """
     pairs = [p for p in combinations_with_replacement(range(modes), 2) if order > 1 or p[0] == p[1]]
     by_load = [("forced", line, (i,)) for line in forced for i in range(modes)]
     return [*by_load, *(("parametric", line, pair) for line in parametric for pair in pairs)]

@@ -50,7 +50,7 @@ _HIGHEST_SPEED = 0.99  # largest speed at which modes of a basis are computed, r
 _MOST_MODES = 13  # largest number of modes that "auto" takes at the slowest speed, and at the fastest
 # First number of modes tried about equilibria; not small, because equilibria are solved again for each basis.
 _FIRST_ABOUT_EQUILIBRIA = 6
-# Number of speeds at which the model error is computed, in addition to that of the largest amplitude.
+# Number of speeds at which the model error is computed, in addition to the speed of the largest amplitude.
 _MOST_JUDGED = 4
 _LINEAR = "vibration about the equilibrium being linear"
 
@@ -190,7 +190,7 @@ class SteadyResponse(StatesModelError):
 
     @property
     def left_out_speeds(self) -> np.ndarray:
-        """Speeds [rad/s] at which the model error is computed: that of the largest amplitude, and others."""
+        """Speeds [rad/s] at which the model error is computed: of the largest amplitude, and some others."""
         known = np.flatnonzero(np.isfinite(self.amplitude))
         if not len(known):
             return np.empty(0)
@@ -260,8 +260,8 @@ def steady_response(
         the tolerance.
     harmonics : int, optional
         Number of interactions with the periodic stiffness whose spectral lines are kept: 0 keeps the lines of
-        the load, 1 also those that their product with the stiffness adds, and so on.  If not given, as many
-        as the tolerance needs, up to 5.
+        the load, 1 also the lines that their product with the stiffness adds, and so on.  If not given, as
+        many as the tolerance needs, up to 5.
     tolerance : float
         Target of the truncation error of the harmonics, and with ``modes="auto"`` also the modal
         truncation error, each relative to `SteadyResponse.bound`.
@@ -328,7 +328,7 @@ class ResponseRequest(FieldsOnly):
         vibrated = _largest(vibrating, harmonic, stable)
         about = " about the equilibrium at each speed" if scene.physics.large_deflection else ""
         method = f"{self.model.discretization}, {self.basis}{about}, {counted(len(used), 'harmonic')}"
-        estimated = "without the harmonics that the last product with the stiffness adds"
+        estimated = "fewer harmonics: without those that the last product with the varying stiffness adds"
         without_static = np.array_equal(line, vibrating, equal_nan=True)
         return SteadyResponse(
             speeds=speeds,
@@ -383,7 +383,10 @@ class ResponseRequest(FieldsOnly):
         return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
 
     def smallest_basis(self) -> ModalBasis:
-        """Choose the first basis: modes at slowest and fastest speed; for large deflection, at each speed."""
+        """Return the smallest modal basis, with which the search for a sufficient basis starts.
+
+        It consists of modes at the slowest and at the fastest speed or, with large deflection, at each speed.
+        """
         if self.scene.physics.large_deflection:
             return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
@@ -447,7 +450,7 @@ def _warnings(
     yield from validity.warn_of_road(np.array([motion.road_acceleration(v) for v in speeds]), speeds)
     if (at := error > tolerance).any():
         said = (
-            f"the harmonics are not resolved to {tolerance:g} at ",
+            f"the truncation error of the harmonics exceeds the tolerance {tolerance:g} at ",
             validity.list_speeds(speeds, at),
             "; see error",
         )

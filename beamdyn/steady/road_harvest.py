@@ -29,8 +29,9 @@ _TOLERANCE = 1e-5  # tolerance of the linear model that gives the root mean squa
 class RoadHarvest:
     """Harvest that a random road under the wheel adds to a `Harvest` at its S speeds.
 
-    Mean power adds to that of steady motion, as the two are not correlated; root mean squares are those by
-    the road alone, about the steady motion.  The parametric term is left out, as in `random_response`.
+    The mean power adds to the mean power of steady motion, as the road and the steady motion are not
+    correlated.  Root mean squares are those of the vibration that the road causes about the steady motion.
+    The parametric term is left out, as in `random_response`.
 
     Parameters
     ----------
@@ -45,8 +46,8 @@ class RoadHarvest:
     deflection : ndarray, shape (S,)
         Root mean square of the tip deflection [m].
     error : ndarray, shape (S,)
-        Estimated relative error of the power; in open circuit twice that of the voltage, in short circuit
-        twice that of the current.
+        Estimated relative error of the power; in open circuit twice the error of the voltage, in short
+        circuit twice the error of the current.
     strain_error, deflection_error : ndarray, shape (S,)
         Estimated absolute errors of the strain, and of the deflection [m].
 

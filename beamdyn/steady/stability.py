@@ -6,14 +6,17 @@ balance, here in the modes of the mean equations:
 
     (s + i Omega_h) z_h = diag(sigma) z_h + sum_g V_(h-g) z_g
 
-With V = 0 the eigenvalues are sigma_a - i Omega_h.  Each stays in the Gershgorin disc about that value with
-the radius rho_a, the sum of its row of |V|.  Without damping, and with a mean energy that is positive, an
-eigenvalue leaves the imaginary axis only by meeting one of opposite energy (Krein), so that the motion is
-stable if no disc of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h, or if all discs lie left of
-the axis.  Without damping, discs that are far from others are drawn smaller first, by scaling the
-coordinates.  Eigenvalues are computed only where discs still overlap.  The matrix then has the harmonics
-between which the motion resonates, (0, 0) and the h of the overlaps, and those that a few multiplications of
-these by the periodic coefficients (interactions) add.  Their number is increased until the growth rate has
+Here sigma are the eigenvalues of the mean equations, and V the harmonics of the periodic coefficients.  With
+V = 0 the exponents s are sigma_a - i Omega_h.  Each stays in the Gershgorin disc about that value with the
+radius rho_a, the sum of its row of |V|.  If there is no damping, and the mean energy is positive, an exponent
+leaves the imaginary axis only by meeting one of opposite energy (Krein).  So the motion is stable if no disc
+of a sigma_a overlaps one of a conjugate sigma_b - i Omega_h; it is also stable if all discs lie left of the
+axis.  If there is no damping, the radii of discs that are far from others are reduced before this comparison,
+by scaling the coordinates.
+
+Eigenvalues are computed only where discs still overlap.  The matrix then has the harmonics between which the
+motion resonates, (0, 0) and the h of the overlaps, and those that a few multiplications of these by the
+periodic coefficients (interactions) add.  The number of interactions is increased until the growth rate has
 converged.
 
 In shapes of arrays, S counts speeds, n coordinates, m eigenvalues of the mean equations, and H harmonics.
@@ -40,8 +43,8 @@ _ROUNDING = 1e-9  # largest real part, over the largest |eigenvalue|, that count
 _SETTLED = 1e-6
 _MOST_INTERACTIONS = 4  # largest number of interactions beyond the resonant harmonics
 _MOST_OUTSIDE = 0.1  # largest share of an accepted eigenvector in the outermost harmonics
-# Largest difference of growth rates that belong to copies of one exponent, relative to the change of the
-# growth rate by the resonance.
+# Eigenvalues of Hill's matrix are taken for copies of one exponent if their real parts differ by at most this
+# fraction of the change of the growth rate by the resonance.
 _SAME_RATE = 0.05
 _NEAREST = 8  # number of eigenvalues followed from one number of interactions to the next
 _OFF = 1e-4  # offset of a shift from an eigenvalue, over the largest |eigenvalue|, to avoid a singular matrix
@@ -69,12 +72,12 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     Returns
     -------
     rate, error : ndarray, shape (S,)
-        The error of modes that resonate is the change by the last interaction whose harmonics are kept,
-        and where the rates are commensurate a tenth of the differences over the phases tried.  The rate of
-        other modes is that of the mean equations, and its error the shift by the periodic coefficients in
-        second order.  Where the mean equations neither grow nor decay, as without damping, that shift is
-        taken to leave the growth rate 0, without error.  The error is infinite where the mean equations are
-        singular.
+        The error of modes that resonate is the change by the last interaction whose harmonics are kept; where
+        the rates are commensurate, a tenth of the differences between the phases tried is added.  The rate of
+        other modes is that of the mean equations, and its error is the second-order shift by the periodic
+        coefficients.  Where motions by the mean equations neither grow nor decay, as without damping, the
+        shift is taken not to change the growth rate 0, which then has no error.  The error is infinite where
+        the mean equations are singular.
     """
     A, periodic = _first_order(system)
     sigma, R = _solve_mean(system, A)
@@ -138,7 +141,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
     S, n = len(K), system.size
     K, C = np.linalg.solve(M, K), np.linalg.solve(M, C)
     w = np.sqrt(np.abs(K).max(axis=(1, 2)))[:, None, None]
-    w = np.where(w == 0, 1.0, w)  # an uncoupled circuit's coordinate has no stiffness
+    w = np.where(w == 0, 1.0, w)  # no stiffness: coordinate of an uncoupled circuit
     A = np.zeros((S, 2 * n, 2 * n))
     A[:, :n, n:], A[:, n:, :n], A[:, n:, n:] = w * np.eye(n), -K / w, -C
     periodic = []
@@ -156,7 +159,7 @@ def _first_order(system: PeriodicSystem) -> tuple[np.ndarray, list[tuple[np.ndar
 def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute eigenvalues and eigenvectors of A, the first-order form of the mean equations at each speed.
 
-    Without damping, they are computed from mass and stiffness.
+    If there is no damping, they are computed from mass and stiffness.
     """
     if system.mean[1].any():
         return np.linalg.eig(A)
@@ -170,7 +173,7 @@ def _solve_mean(system: PeriodicSystem, A: np.ndarray) -> tuple[np.ndarray, np.n
 def _balance(
     sigma: np.ndarray, V: list[tuple[np.ndarray, np.ndarray]]
 ) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Scale overdamped modes so that their coupling to other modes is equal in both directions.
+    """Scale overdamped modes in the coefficients V: each acts on the others as strongly as these on it.
 
     Scaled like oscillating modes, the slowly decaying mode of a circuit with a large resistance would enlarge
     the Gershgorin discs of all other modes in proportion to that resistance.
@@ -219,7 +222,10 @@ class _MeanMotion:
         return reduce(np.add, parts)
 
     def gap(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute eigenvalue a minus b, plus i times the rate of harmonic h [1/s], for all modes a, b."""
+        """Compute sigma_a - sigma_b + i Omega_h [1/s] for all modes a, b and harmonics h.
+
+        The shape is (rates, modes, modes, harmonics); Omega_h is the angular frequency of harmonic h.
+        """
         omega = self.rates @ np.array(harmonics).T
         difference = self.sigma[:, :, None] - self.sigma[:, None, :]
         return difference[..., None] + 1j * omega[:, None, None, :]
@@ -245,11 +251,12 @@ class _MeanMotion:
         return reduce(np.add, parts)
 
     def shrunk_radius(self, harmonics: list[Pair]) -> np.ndarray:
-        """Compute the radii (rates, modes) of Gershgorin discs, made smaller where other discs are far away.
+        """Compute the radii (rates, modes) of Gershgorin discs, reduced by scaling the coordinates.
 
-        The coordinates of far discs are scaled by t < 1.  In the row of a disc this keeps the terms of
-        coupling with discs close by, and multiplies the terms of coupling with far discs by t.  The radii of
-        far discs grow by 1/t, to at most half of their distance.
+        Seen from one disc, another is close if its distance is at most twice the largest radius, else far.
+        Scaling the coordinates of the far discs by t < 1 multiplies, in the row of the one disc, the terms of
+        coupling with far discs by t, and keeps those with close discs.  The radii of the far discs grow by
+        1/t, to at most half of their distance.
         """
         radius, distance = self.radius, np.abs(self.gap(harmonics))
         close = 2 * radius.max(axis=1)[:, None, None, None]
@@ -262,7 +269,8 @@ class _MeanMotion:
     def resonances(self, considered: np.ndarray) -> Iterator[tuple[int, list[_Resonance]]]:
         """Yield index and resonances of each pair of phase rates at which discs of modes overlap.
 
-        Only modes of opposite energy sign, and pairs marked in `considered`, are compared.
+        Only discs of modes of opposite energy are compared.  `considered`, shape (S,), marks the pairs of
+        phase rates to be examined.
         """
         levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
@@ -270,7 +278,7 @@ class _MeanMotion:
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)
         rows = np.flatnonzero(undamped & overlap.any(axis=(1, 2, 3)))
         overlap[rows] = self[rows]._overlap(harmonics, self[rows].shrunk_radius(harmonics))
-        # Harmonics are in the order of their interactions: the first stationary one has the fewest.
+        # Harmonics are in the order of their interactions: the first one of frequency 0 has the fewest.
         reached = generate_harmonics([(0, 0)], self.coupling, _MOST_STEPS)[1:]
         pairs = np.array([h for level in reached for h in level])
         for i in np.flatnonzero(overlap.any(axis=(1, 2, 3))):
@@ -310,7 +318,7 @@ class _Resonance:
     mode : int
         Index of the mode, in the harmonic (0, 0).
     harmonics : set of pair
-        Harmonics of the modes whose discs overlap that of the mode, and (0, 0).
+        Harmonics of the modes whose discs overlap the disc of this mode, and (0, 0).
     stationary : pair or None
         A harmonic h, not (0, 0), of frequency 0, if the rates are commensurate.
     """
@@ -335,7 +343,7 @@ class _Resonance:
     def _growth_rate_at(self, phase: float, scale: float) -> tuple[float, float]:
         """Compute the growth rate and its error [1/s] at a given phase between commensurate rates.
 
-        Harmonics are added until the growth rate settles; `scale` is that of `growth_rate`.
+        Harmonics are added until the growth rate has converged; `scale` is as for `growth_rate`.
         """
         hill, inner = self._hill_matrix(1, phase)
         s, z = np.linalg.eig(hill.toarray())
@@ -349,7 +357,9 @@ class _Resonance:
         return rate, error
 
     def _select(self, s: np.ndarray, z: np.ndarray, inner: int, scale: float) -> tuple[float, complex]:
-        """Select the growth rate from eigenvalues and vectors, and the start value for the next step.
+        """Select the growth rate from eigenvalues s and vectors z of Hill's matrix, and the next start value.
+
+        The start value is the exponent near which the next, larger Hill's matrix is searched for eigenvalues.
 
         Hill's matrix has copies s + i Omega_h of every exponent s, one for each harmonic h.  Copies whose
         vector is large in the outermost harmonics (rows from `inner` on) are wrong, because the neighbours of
@@ -368,8 +378,9 @@ class _Resonance:
     def _hill_matrix(self, interactions: int, phase: float) -> tuple[scipy.sparse.csc_array, int]:
         """Build Hill's matrix for the harmonics within a number of interactions, and count its inner rows.
 
-        Inner rows, which come first, are those of the harmonics within one interaction fewer.  Harmonics that
-        differ by one of frequency 0 (commensurate rates) are merged; `phase` is that harmonic's phase [rad].
+        Inner rows, which come first, are those of the harmonics within one interaction fewer.  If the rates
+        are commensurate, a harmonic other than (0, 0) has the frequency 0.  Harmonics that differ by it are
+        merged; `phase` is its phase [rad].
         """
         levels = generate_harmonics(self.harmonics, self.coupling, interactions)
         inner = dict.fromkeys(self._fold(h) for level in levels[:-1] for h in level)
@@ -389,9 +400,9 @@ class _Resonance:
         return j - turns * a, k - turns * b
 
     def _folded_convolution(self, spectrum: np.ndarray, harmonics: list[Pair], phase: float) -> np.ndarray:
-        """Build the matrix that multiplies harmonics by a function; harmonics of equal rate are merged.
+        """Build the matrix that multiplies a function, given by its harmonics, by the function of a spectrum.
 
-        `phase` is as for `_hill_matrix`.
+        Harmonics of equal frequency are merged; `phase` is as for `_hill_matrix`.
         """
         if self.stationary is None:
             return convolution_matrix(spectrum, harmonics)[0]
@@ -408,7 +419,10 @@ class _Resonance:
 def _nearest_eigenvalues(
     hill: scipy.sparse.csc_array, near: complex, scale: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the eigenvalues of a sparse matrix nearest to the value `near`, and their eigenvectors."""
+    """Compute the eigenvalues of a sparse matrix nearest to the value `near`, and their eigenvectors.
+
+    The search is shifted from `near` by a small fraction of `scale`, as the matrix may be singular there.
+    """
     start = np.ones(hill.shape[0], dtype=complex)
     try:
         return eigs(hill, min(_NEAREST, hill.shape[0] - 2), sigma=near + _OFF * scale, v0=start)

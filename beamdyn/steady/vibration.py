@@ -39,7 +39,7 @@ _MOST_INTERACTIONS = 5  # largest number of interactions with the periodic coeff
 _MOST_UNKNOWNS = 2**17  # number of unknowns solved at once: they fit the processor's cache
 # Order of the axes at the tip: direction of bending, direction across, direction along the beam.
 _ACROSS_THEN_ALONG = [1, 2, 0]
-_ROUNDING = 1e-15  # relative rounding error if no harmonic is neglected
+_ROUNDING = 1e-15  # relative error that is stated if no harmonic is neglected
 _NO_FREQUENCY = 1e-8  # frequency, relative to a clamped beam's, below which it counts as 0
 
 
@@ -104,7 +104,7 @@ def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds:
     equations = model.modal_equations(basis)
     tips = np.broadcast_to(equations.tips, (len(speeds), *equations.tips.shape))
     free = np.zeros(len(speeds), dtype=bool)
-    if shift := model.equations.shift:  # without a shift, the stiffness at rest is already positive definite
+    if shift := model.equations.shift:  # not 0 if the root is not clamped: the beam may turn freely
         lowest = np.abs(Solver(model.equations.steady().undamped()).eigenvalues(speeds, 1)[:, 0])
         free = lowest < _NO_FREQUENCY * np.sqrt(shift)
     return Vibration(
@@ -124,8 +124,8 @@ def _about_equilibria(
 ) -> Vibration:
     """Build the equations of vibration about the equilibrium at each speed.
 
-    Where there is no equilibrium, those about the straight beam stand in for them; their results are not
-    used.
+    At speeds without an equilibrium, the equations about the straight beam take their place; the results at
+    these speeds are discarded.
 
     The directions of the tip are: of bending, across, and along the axis of the beam at the root.
     """
@@ -308,7 +308,7 @@ def add_static(
     static : ndarray, shape (S, directions)
         Deflection in equilibrium [m].
     directions : int
-        Number of directions to keep, those of the modelled planes.
+        Number of directions to keep: one for each modelled plane of bending.
 
     Returns
     -------

@@ -24,14 +24,14 @@ class Caution:
     Parameters
     ----------
     kind : str
-        Sort key of the subject, such as "a"; warnings with the same key are merged.
+        Key of the subject, such as "a", by which warnings are sorted; those with the same key are merged.
     count : int
         Number of pairs of a design and a speed that the warning concerns.
     weight : float
         Severity, by which the worst of the warnings of one kind is chosen.
     said : str
-        Text about the worst design, which is shown after the number of designs; a `Statement`, also a string,
-        if programs may query its kind.
+        Text about the worst design, which follows the number of designs in the shown sentence.  It is a
+        `Statement`, a subclass of str, if programs are to read the kind of the warning from it.
     """
 
     kind: str

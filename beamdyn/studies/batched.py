@@ -302,8 +302,8 @@ def stacks_of(
 
 
 BUCKLES, DOES_NOT_BUCKLE, NOT_FOUND = "buckles", "does not buckle", "not found"
-_SIZED_FOR = 5  # number of modes for which the first basis is chosen, as for a single design
-_TO_HALF = 4  # number of steps in a sequence of bases from one basis to another of about half the size
+_SIZED_FOR = 5  # number of modes for which the first basis is chosen, as for one design
+_TO_HALF = 4  # number of steps to coarser bases, from a basis to one of about half its size
 _ROUNDING = 64 * float(np.finfo(float).eps)  # rounding error of a sum, relative to the sizes of its terms
 _BENT = "rotation bends the beam at every speed, so that it does not buckle as a straight one does"
 
@@ -368,7 +368,7 @@ def _search(
 
 
 def _stiffened(designs: SimilarDesigns) -> np.ndarray:
-    """Return for which designs a proof exists that rotation stiffens them against every deflection."""
+    """Mark the designs (N,) for which it is proven that rotation stiffens them against every deflection."""
     two = designs.reference.physics.planes == 2
     with_inertia = [designs.tip[name] != 0 for name in ("transverse_inertia", "axial_inertia")]
     if designs.reference.beam.point_masses:
@@ -377,13 +377,15 @@ def _stiffened(designs: SimilarDesigns) -> np.ndarray:
     tilting = designs.tip["transverse_inertia"] - designs.tip["axial_inertia"]
     if not two:
         return _is_stiffened(designs, designs.in_plane, tilting)
-    # For two planes, the proof does not cover bodies with moments of inertia.
+    # With two planes of bending, the proof covers only tip bodies without moments of inertia.
     apart = ~np.any(with_inertia, axis=0)
     return apart & np.all([_is_stiffened(designs, np.array(c2), np.array(0.0)) for c2 in (0.0, 1.0)], axis=0)
 
 
 def _is_stiffened(designs: SimilarDesigns, cos2: np.ndarray, tilting: np.ndarray) -> np.ndarray:
-    """Return where F of `beamdyn.modes.buckling`, whose sign decides on buckling, is surely positive: (N,).
+    """Mark the designs (N,) for which the form F of `beamdyn.modes.buckling` is surely positive.
+
+    Rotation then stiffens the beam against every deflection, so that it does not buckle.
 
     Parameters
     ----------

@@ -88,7 +88,8 @@ class SingleDesigns(FieldsOnly):
         with statements.unannounced():
             found = [_answer(self.question, *each) for each in zip(designs, self.speeds, strict=True)]
         value, error, status = (np.array([answer[i] for answer in found]) for i in range(3))
-        # The warnings count the refused results, and those with warnings; they quote the first of each only.
+        # There are at most two warnings: of refused results, and of results with warnings.  Each of the two
+        # has the number of these results, and the reasons of the first one only.
         refused = [int((answer.status[:, 0] == REFUSED).sum()) for answer in found]
         warned = [int(answer.is_warned.sum()) for answer in found]
         without = _caution("there is no answer", designs, refused, [answer.refusals for answer in found])
@@ -102,7 +103,10 @@ def _caution(
     counts: Sequence[int],
     reasons: Sequence[tuple[str, ...]],
 ) -> Iterator[Caution]:
-    """Yield a warning with the number of results concerned, the first such design, and the reason."""
+    """Yield a warning with the number of results concerned, the first such design, and the reason.
+
+    Each design has a number of such results in `counts`; there is no warning if all these numbers are 0.
+    """
     if any(counts):
         first = next(i for i, count in enumerate(counts) if count)
         at = statements.joined(
@@ -161,7 +165,7 @@ def _answer_crossings(question: StudyQuestion, scene: Scene, _: np.ndarray) -> S
     """Find the lowest speed at which each mode crosses each excitation line."""
     found = resonance_speeds(scene, question.speed, question.modes, 1, question.discretization)
     keys, lowest = [crossing_key(each) for each in found], dict[Any, Any]()
-    for key, crossing in zip(keys, found, strict=True):  # by ascending speed: the first one counts
+    for key, crossing in zip(keys, found, strict=True):  # in order of speed: the lowest crossing is first
         lowest.setdefault(key, crossing)
     there = {line_key(*each) for each in lines_of(scene, question.speed)}
     shape = 1, question.numbers
@@ -240,7 +244,11 @@ def _at_each(
     warned: np.ndarray | None,
     failed: tuple[str, ...] = (),
 ) -> SpeedAnswer:
-    """Build the result at each of `speeds` from values, errors and statuses at the distinct speeds."""
+    """Build the result at each of `speeds`, which may repeat, from the result `found` at distinct speeds.
+
+    `answer` has values, absolute errors and statuses at the distinct speeds in ascending order; `warned`
+    marks those with a warning; `failed` are further warnings, beside those of `found`.
+    """
     order = np.unique(speeds, return_inverse=True)[1]
     value, error, status = answer
     with np.errstate(divide="ignore", invalid="ignore"):

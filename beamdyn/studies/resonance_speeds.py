@@ -1,4 +1,4 @@
-"""Resonance speeds of similar designs by batched eigenproblems, without a search in each."""
+"""Resonance speeds of many similar designs at once, by batched eigenproblems in one basis."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def line_key(kind: str, line: Line) -> tuple[str, float]:
 
 
 def crossing_key(crossing: Crossing | PossibleCrossing) -> tuple[str, float, int]:
-    """Return a key that matches a crossing that was found with a possible one: kind, multiple, mode."""
+    """Return kind, multiple and mode of a crossing: a key that matches found crossings with possible ones."""
     return *line_key(crossing.kind, crossing.line), crossing.mode
 
 
@@ -82,7 +82,11 @@ class PossibleCrossing:
 
 @lru_cache(maxsize=64)
 def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
-    """Return kind and line of each first-order excitation of a scene, up to a top speed [rad/s]."""
+    """Return each excitation line of a scene with its kind, "forced" or "parametric".
+
+    These are the lines of the load and of the periodic stiffness, without the lines that products of the two
+    add.  `top` is the speed [rad/s] at which the equations are expanded in harmonics.
+    """
     system = periodic_system(Model(scene, _FEW).equations, scene.motion, np.array([top]))
     kinds = zip(("forced", "parametric"), excitation_lines(system, scene.motion, 1), strict=True)
     return tuple((kind, line) for kind, lines in kinds for line in lines)
@@ -91,7 +95,7 @@ def lines_of(scene: Scene, top: float) -> tuple[tuple[str, Line], ...]:
 def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> tuple[PossibleCrossing, ...]:
     """List the resonances that may occur in the designs: each excitation line with each mode.
 
-    The lines are those of extreme designs and of some evenly spread ones.
+    The lines are collected from extreme designs and from some evenly spread ones.
 
     Raises
     ------
@@ -116,7 +120,7 @@ def list_resonances(scene: Scene, designs: Designs, top: float, modes: int) -> t
 def _ends_of_columns(designs: Designs) -> list[int]:
     """Return the indices of the designs with the smallest and largest value of each input.
 
-    The list is empty if all combinations of the inputs are computed.
+    The list is empty if the designs are all combinations of the inputs: their extremes are found otherwise.
     """
     if designs.combine == "product":
         return []

@@ -1,21 +1,22 @@
 """Similar designs: a reference beam with different tip bodies, springs, radii, angles and speeds.
 
-Similar beams have mass per length, stiffness and length s_m, s_k and s_L times those of a reference.  They
-vibrate like the reference beam if its tip mass is divided by s_m s_L, its moments of inertia by s_m s_L^3,
-offset and radius by s_L, root springs are multiplied by s_L/s_k, and the speed by
+A similar beam has mass per length, stiffness and length s_m, s_k and s_L times those of a reference beam.  It
+vibrates like the reference beam with the similar beam's tip mass divided by s_m s_L, moments of inertia
+divided by s_m s_L^3, offset and radius divided by s_L, root springs multiplied by s_L/s_k, and speed
+multiplied by
 
     T = sqrt(s_m s_L^4 / s_k);
 
-the frequencies of the reference, divided by T, are those of the beams.  The reference's matrices are
-polynomials of few quantities.  In one plane of bending they are linear in the mass of the body, in its moment
-of inertia J_n about the axis of bending, in (J_e - J_1)/J_n with its transverse and axial moments of inertia
-J_e and J_1, in r cos(phi) of radius and setting angle, in the squared cosine of the bending angle and in the
-spring, quadratic in the offset.  In two planes they are linear in the moments of inertia, in the springs, and
-in the stiffness in the second direction over that in the first, and combinations of 1, cos(2 psi) and
-sin(2 psi) of the bending angle psi.  They are interpolated between the extremes of all designs.  Every
-combination of extremes must be a valid scene, but a moment of inertia could then exceed the sum of the other
-two.  So the tip body's second moments of mass are combined instead: moments of inertia are sums of two of
-them, and any nonnegative values belong to a possible body.
+its frequencies are those of this reference beam, divided by T.  The reference's matrices are polynomials of
+few quantities.  In one plane of bending they are linear in the mass of the body, in its moment of inertia J_n
+about the axis of bending, in (J_e - J_1)/J_n with its transverse and axial moments of inertia J_e and J_1, in
+r cos(phi) of radius and setting angle, in the squared cosine of the bending angle and in the spring,
+quadratic in the offset.  In two planes they are linear in the moments of inertia, in the springs, and in the
+stiffness in the second direction over that in the first, and they are combinations of 1, cos(2 psi) and
+sin(2 psi) of the bending angle psi.  The matrices are interpolated between the extremes of all designs.
+Every combination of extremes must be a valid scene, but a moment of inertia could then exceed the sum of the
+other two.  So the tip body's second moments of mass are combined instead: moments of inertia are sums of two
+of them, and any nonnegative values belong to a possible body.
 
 In shapes of arrays, N counts designs, S speeds, R selected designs, and T scenes at combinations of extremes.
 """
@@ -42,7 +43,8 @@ from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 from beamdyn.studies.sensitivities.changes import equations_near
 
-# Exponents with which each input enters mass per length, and bending, axial and second bending stiffness.
+# Powers of each input to which mass per length, and bending, axial and second bending stiffness are
+# proportional.
 POWERS = {
     "beam.width": (1, 1, 1, 3),
     "beam.thickness": (1, 3, 1, 1),
@@ -71,8 +73,8 @@ SIMILAR = {
     *(f"mount.{name}" for name in (*_OF_MOUNT, *_SPRINGS)),
     *_WITHOUT_EFFECT,
 }
-# Quantities on which the matrices depend, with the degree of the polynomial; in "angle" it is a trigonometric
-# polynomial.
+# Quantities of which the matrices are polynomials, with the degree of the polynomial; for "angle" the
+# polynomial is trigonometric.
 _DEGREES = {
     **{"mass": 1, "offset": 2, "inertia": 1, "tilt": 1, "axial": 1, "in_plane": 1, "spring": 1},
     **{"along_beam": 1, "along_bending": 1, "along_axis": 1},
@@ -88,7 +90,10 @@ Nodes = tuple[tuple[str, tuple[float, ...]], ...]
 
 
 def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
-    """Return whether designs of a study over some inputs are similar beams, to be solved in one basis."""
+    """Return whether all designs of a study over the inputs `names` are similar beams.
+
+    They can then be solved in one basis.
+    """
     plain = scene.physics in (Physics(), Physics(planes=2)) and not scene.chooses_physics
     lumped = bool(scene.beam.point_masses) and bool(names & POWERS.keys())
     apart = scene.physics.planes == 1 or scene.beam.second_bending_stiffness is not None
@@ -100,7 +105,7 @@ def differ_in_numbers_only(scene: Scene, names: set[str]) -> bool:
 
 @dataclass(frozen=True)
 class SimilarDesigns(FieldsOnly):
-    """N designs as a reference beam with different tip bodies, springs, radii, angles and speeds.
+    """N designs, represented by one beam with different tip bodies, springs, radii, angles and speeds.
 
     Parameters
     ----------
@@ -133,7 +138,11 @@ class SimilarDesigns(FieldsOnly):
     # Similarity -----------------------------------------------------------------------------------
 
     def _scale(self, which: int) -> np.ndarray:
-        """Compute ratios of mass per length (0) or a stiffness (1, 2, 3) to the reference's: see `POWERS`."""
+        """Compute the ratio of a property of each design to that of the reference, shape (N,).
+
+        `which` is 0 for the mass per length, and 1, 2 or 3 for the bending, axial or second bending
+        stiffness: the index in the values of `POWERS`.
+        """
         scale = np.ones(self.count)
         for name, powers in POWERS.items():
             if name in self.columns:
@@ -156,7 +165,7 @@ class SimilarDesigns(FieldsOnly):
 
     @cached_property
     def strain(self) -> np.ndarray:
-        """Ratio of each design's axial strain to the reference's at the speed that corresponds to it."""
+        """Ratio of each design's axial strain to that of the reference at the corresponding speed."""
         return self._scale(1) / (self.length**2 * self._scale(2))
 
     # Quantities on which the matrices depend as polynomials -------------------------------------------
@@ -192,7 +201,10 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def axial(self) -> np.ndarray:
-        """Distance of the root from the rotation axis, against the direction of the beam [m]."""
+        """Component r cos(phi) of the root's distance from the axis of rotation, along the beam [m].
+
+        It is that of the reference beam that represents each design, and positive if the beam points inward.
+        """
         return self._radius * _cos(self._of_mount("setting_angle"), ROUNDED_ANGLE)
 
     @cached_property
@@ -247,7 +259,10 @@ class SimilarDesigns(FieldsOnly):
 
     @property
     def can_be_solved(self) -> bool:
-        """Whether the roots of all designs are clamped, or all on finite springs."""
+        """Whether all designs can be solved with the same coordinates.
+
+        This is so if each root spring is infinite (clamped) in all designs, or finite and positive in all.
+        """
         return all(
             (v > 0).all() and (np.isfinite(v).all() or np.isinf(v).all()) for v in self._springs.values()
         )
@@ -285,7 +300,10 @@ class SimilarDesigns(FieldsOnly):
 
 
 def nodes_of(parts: Iterable[SimilarDesigns]) -> Nodes:
-    """Return the values of each quantity between which matrices are interpolated, for designs in parts."""
+    """Return the values of each quantity between which the matrices of all designs are interpolated.
+
+    The designs are given in several `parts`.
+    """
     ends: dict[str, tuple[float, float]] = {}
     for part in parts:
         for name, values in part.quantities.items():
@@ -378,7 +396,10 @@ def _family(reference: Scene, nodes: Nodes, discretization: Discretization) -> P
 
 @lru_cache(maxsize=8)
 def _forces(reference: Scene, nodes: Nodes) -> np.ndarray:
-    """Compute the axial strain of the node scenes over squared speed [s2], (T, points); nan if unknown."""
+    """Compute the axial strain by rotation, divided by squared speed [s2], at points along T node scenes.
+
+    The shape is (T, points).  The strain is nan if the axial stiffness of the beam is not known.
+    """
     scenes, beam = _node_scenes(reference, nodes), reference.beam
     if beam.axial_stiffness is None:
         return np.full((len(scenes), 1), np.nan)

@@ -67,8 +67,8 @@ def known_derivatives(question: StudyQuestion, inputs: Sequence[tolerances.Sprea
                 found = frequency_sensitivities(scene, *of_modes, tolerance=question.tolerance, **options)
     except ValueError as error:
         return KnownDerivatives(warnings=_said(error))
-    # Columns are in the order of the result: nan for missing crossings, the lowest crossing if there are
-    # several.
+    # Each number of the result gets its derivatives: nan if it is a crossing that was not found, and those of
+    # the crossing at the lowest speed if several have its label.
     none = np.full(len(found.inputs), np.nan)
     places = {name: k for k, name in reversed([*enumerate(found.answers)])}
     value, error = (
@@ -164,12 +164,12 @@ def spread(
         Name of the result, as in `study`.
     samples : int
         Number n of designs in each of 2 + d random samples, d being the number of inputs: a power of two from
-        128 on; otherwise the next one is used.
+        128 on; for other numbers the next such power is used.
     seed : int
         Seed of the random designs.
     speed, modes, window, discretization, tolerance, workers, executor, store, progress
         As for `study`; the total number in `progress` increases by the designs of the worst cases, at most to
-        twice.
+        twice its first value.
 
     Returns
     -------
@@ -222,7 +222,10 @@ def spread(
 
 @dataclass
 class _StudyAnswers:
-    """Results of designs by studies, with the same columns as the first study."""
+    """Function that computes the results of designs by `study`.
+
+    The results of each call are arranged in columns as those of the first call.
+    """
 
     scene: Scene
     what: Any
@@ -232,7 +235,7 @@ class _StudyAnswers:
 
     @property
     def first(self) -> Study:
-        """The first study."""
+        """Study of the first call."""
         return self._studies[0]
 
     def __call__(self, columns: dict[str, np.ndarray]) -> SpreadAnswers:
@@ -335,7 +338,7 @@ def nominal_value(scene: Scene, name: str, speed: float) -> float:
 def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
     def convert(number: str, written: str) -> float:
         if written not in ("", unit):
-            bound = f"a text has percentages, or numbers in {unit or 'SI'}"
+            bound = f"a tolerance given as text has percentages, or numbers in {unit or 'SI'}"
             raise InvalidValue(name, text, bound, tolerances.without_unit(text, written, unit))
         return float(number)
 
@@ -343,7 +346,10 @@ def _in_si(name: str, text: str, unit: str) -> tolerances.Convert:
 
 
 def check_reach(scene: Scene, given: tolerances.SpreadInput) -> None:
-    """Raise an error if an end of a tolerance makes the scene with its other nominal values invalid."""
+    """Raise an error if the scene is invalid with an input at either end of its tolerance.
+
+    All other inputs keep their nominal values.
+    """
     for end in given.distribution.reach:
         try:
             with_numbers(scene, {given.name: end})

@@ -41,7 +41,7 @@ VERSIONS = (
 )  # packages whose versions affect the last bits of stored results
 _KIND = "beamdyn study"
 _BATCHED, _SINGLE = 1024, 16  # number of results per task, for designs solved in batches and one by one
-_AT_ONCE = 100_000  # number of designs whose quantities are compared at once
+_AT_ONCE = 100_000  # number of designs whose quantities are computed at once
 # Largest number of inputs of which all combinations of smallest and largest values are checked first.
 _MOST_CORNERS = 10
 
@@ -68,8 +68,9 @@ def study(
 
     For frequencies, critical speeds and resonance speeds of slender beams, all designs are represented by one
     reference beam with different tip bodies, springs, radii, angles and speeds, and solved in one basis by
-    batched eigenproblems.  All other results are computed design by design; those of motions over all speeds
-    at once.  Both ways give the results of single analyses, within the stated errors.
+    batched eigenproblems.  All other results are computed design by design; those that need a motion, such as
+    amplitudes, at all speeds of a design at once.  Both ways give the results of single analyses, within the
+    stated errors.
 
     Parameters
     ----------
@@ -80,7 +81,7 @@ def study(
         "mount.radius", "mount.setting_angle", "model.damping_ratio" and others; "speed" [rad/s]; for
         amplitudes, peaks, strains and power also numbers of the motion, such as "motion.road.wavelength"; and
         factors of properties that vary along the beam, such as "beam.scale.bending_stiffness".  Width,
-        thickness and material are those of a rectangular section.
+        thickness and material can be varied only for a beam of rectangular section.
     what : {"frequencies", "critical_speed", "crossings", "amplitude", "peak", "strain", "power"}
         The result: natural frequencies; the speed at which the beam buckles; the speeds at which each mode
         meets each excitation line; the steady amplitude of the tip; its largest deflection in a time window
@@ -95,7 +96,8 @@ def study(
         Beginning and end of the time window for peaks [s], at whose end each transient ends; 20 to 30 s by
         default.
     combine : {"product", "zip"}
-        Combine each value with each of the other inputs, or take the first of all, the second of all, ...
+        "product": all combinations of the values of the inputs; "zip": the first values of all inputs
+        together, then their second values, and so on.
     discretization, tolerance
         As for `natural_modes`; the tolerance of amplitudes, strains and power as for `steady_response`, that
         of peaks as for `sweep`.
@@ -335,13 +337,14 @@ class _Request:
             _check_scenes(self.question.scene, self.others)
         question = self.question
         if question.what == "crossings" and question.tolerance is not None and not self.is_similar:
-            bound = "crossings of these designs are computed by resonance_speeds without a tolerance"
+            bound = "these designs are solved one by one, and their crossings without a tolerance"
             raise checks.InvalidValue("tolerance", question.tolerance, bound, "leave it out")
 
     def solve(self, run: TaskRunner) -> AnswerArrays:
         """Compute the results: in one basis if the designs are similar beams, otherwise one by one.
 
-        The size of tasks follows from the request alone; a response is solved at all speeds at once.
+        The size of tasks follows from the request alone, so that results do not depend on the number of
+        processes.  Responses of a design are solved at all its speeds in one task.
         """
         found = AnswerArrays((self.others.count, self.speeds, self.question.numbers))
         size = _BATCHED if self.is_similar else _SINGLE
@@ -387,7 +390,7 @@ class _Request:
         if not is_batched or not differ_in_numbers_only(scene, names - {"model.damping_ratio"}):
             return False
         if question.what == "crossings" and scene.physics.planes == 2:
-            return False  # each of the two planes has its own excitation lines
+            return False  # the lines of each plane excite only the modes of this plane
         return (
             question.refinement(self._reference).can_be_batched
             and all(self._similar(rows).can_be_solved for rows in self.others.chunks(_AT_ONCE))

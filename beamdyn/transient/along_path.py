@@ -141,7 +141,7 @@ def _shapes(equations: Equations) -> np.ndarray:
 def distance_along_path(
     path: Trajectory, system: ModalSystem, larger: ModalSystem, y0: np.ndarray, y0_of_larger: np.ndarray
 ) -> float | None:
-    """Estimate the largest distance of the tip deflection from that of a larger model [m] during a run.
+    """Estimate the largest difference [m] of the tip deflections of a run and of a larger model.
 
     Parameters
     ----------
@@ -192,7 +192,8 @@ def distance_along_path(
 def _ringing_at_samples(residual: _Residual, steps: RecordSteps) -> float:
     """Estimate the tip's amplitude [m] of fast modes, excited by jumps of the load's slope at samples.
 
-    Only modes that are too fast for the run's samples count; their contributions are added as random numbers.
+    Only modes that are too fast for the run's samples count.  The contributions of all samples to a mode are
+    added as random numbers are, by their squares.
 
     A change of the load's slope excites a mode of angular frequency w with the amplitude change / w^3.  A
     sudden jump of the load between two samples, a time h apart, looks like a slope jump / h, but excites a
@@ -220,7 +221,9 @@ def _stretches(segment: Segment | RecordSegment, residual: _Residual, steady_sta
 
 
 class _Followed(NamedTuple):
-    """Difference from the larger model in a stretch: largest at the tip [m]; e and its rate at the end.
+    """Difference e from the larger model in a stretch: its largest value at the tip [m], and its last value.
+
+    `e` and `rate` are the difference and its time derivative, in coordinates, at the end of the stretch.
 
     `ringing` is the tip's vibration amplitude [m] in the fast modes, if the stretch begins with a load jump.
     """

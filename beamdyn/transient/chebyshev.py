@@ -36,7 +36,10 @@ class Polynomials:
         return replace(self, values=values.astype(np.float32) if rough else values, size=self.size[:count])
 
     def over(self, local: np.ndarray) -> np.ndarray:
-        """Compute the coefficients over a part of [-1, 1], without small terms; `local` is from `to_part`."""
+        """Compute the coefficients over a part of [-1, 1], without small terms.
+
+        `local` is the matrix that `to_part` builds for this part.
+        """
         p = len(self.values)
         if p == 1:
             return self.values

@@ -1,10 +1,10 @@
 """Closed form of the motion at steady speed, as a sum of exponentials, in place of many time steps.
 
-The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g
-are sums of a few harmonics.  So the motion consists of a forced part, at sums of the loads' frequencies and
-those of e, and of free vibrations exp(lambda t) times such sums (Floquet; Hill's method).  Both follow by
-iteration, because e is small.  The result is used only if it satisfies the equations to the required
-accuracy.
+The equations q'' + C q' + (K + sum_m e_m(t) G_m) q = sum_l g_l(t) P_l have constant C and K, and e and g are
+sums of a few harmonics.  So the motion consists of a forced part and of free vibrations.  The forced part has
+the frequencies of the loads, and their sums with frequencies of e.  A free vibration is exp(lambda t) times a
+sum of harmonics at sums of the frequencies of e (Floquet; Hill's method).  Both parts follow by iteration,
+because e is small.  The result is used only if it satisfies the equations to the required accuracy.
 
 In shapes of arrays, n counts coordinates, N times or steps, s nodes in a step, and k exponents or
 frequencies.
@@ -36,8 +36,8 @@ _CHECKED = 64  # number of times at which the equations are checked
 _NEGLIGIBLE = 1e-2  # fraction of the accuracy allowed for the sum of all neglected terms
 _RESOLVED = 12.0  # phase per step [rad] up to which the nodes of a step resolve an exponential
 _MOST_GROWTH = 20.0  # largest exponent by which the motion may grow over a segment
-# A batch has the square of this number of steps: its exponentials are products of those at this number of
-# successive steps, and those at as many multiples of this number.
+# Exponentials are evaluated for batches of 32^2 steps: that at step 32 i + j is the product of those at the
+# steps 32 i and j, so that few exponential functions are called.
 _ROWS = 32
 
 

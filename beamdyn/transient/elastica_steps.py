@@ -68,7 +68,10 @@ _CHECKED = 48  # number of steps of a segment at which the interpolation error i
 
 
 def rest_in_equilibrium(system: BeamInSpaceSystem, y0: np.ndarray, t_end: float) -> Trajectory | None:
-    """Build the motion of a beam that stays at rest, if its forces are in equilibrium at all times."""
+    """Build the motion of a beam that stays at rest, if its forces are in equilibrium at all times.
+
+    Return None if they are not.
+    """
     q, v = np.split(y0[None], 2, axis=1)
     if system.motion.steady_start > 0 or v.any():
         return None
@@ -124,9 +127,10 @@ def _tips(system: BeamInSpaceSystem, segment: Segment) -> np.ndarray:
 
 
 def _error(system: BeamInSpaceSystem, coarse: tuple[Segment, ...], fine: tuple[Segment, ...]) -> TimeError:
-    """Estimate the error of the tip deflection, and the part of each coordinate in it.
+    """Estimate the error of the tip deflection, and the contribution of each coordinate to it.
 
-    It is the distance of the run `coarse` from the run `fine`, which has the same steps with more stages.
+    The error is the distance of the run `coarse` from the run `fine`, which has the same steps but more
+    stages.
     """
     straight, pairs = system.straight, [*zip(coarse, fine, strict=True)]
     change = np.max([np.abs(a.state - b.state).max(axis=0) for a, b in pairs], axis=0)[1 : system.size + 1]
@@ -172,7 +176,9 @@ def propagate_elastica(
     stages: int,
     like: Segment | None = None,
 ) -> Segment:
-    """Integrate nonlinear equations over equal steps, as `beamdyn.transient.gauss.propagate` linear ones.
+    """Integrate the nonlinear equations of a beam with large deflection over equal steps.
+
+    The corresponding function for linear equations is `beamdyn.transient.gauss.propagate`.
 
     Parameters
     ----------
@@ -211,7 +217,7 @@ def propagate_elastica(
 
 
 def _at_nodes(stages: int, values: np.ndarray) -> np.ndarray:
-    """Interpolate values (steps, nodes, coordinates) from Gauss nodes to a rule with `stages` nodes."""
+    """Interpolate values (steps, nodes, coordinates) from their Gauss nodes to `stages` Gauss nodes."""
     given = values.shape[1]
     return legendre.legvander(gauss_rule(stages)[0], given - 1) @ legendre_series(given) @ values
 
@@ -232,10 +238,15 @@ class _Step:
     def advance(
         self, carrier: Carrier, q: np.ndarray, v: np.ndarray, guess: np.ndarray | None
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Compute coordinates and rates at the end of a step, and accelerations at its nodes."""
+        """Compute coordinates and rates at the end of a step, and accelerations at its nodes.
+
+        `carrier` is the motion of the carrier at the nodes; q and v are the coordinates and rates at the
+        start of the step.  Newton's method starts with the accelerations `guess`; for None they are estimated
+        from the equations linearized at the start of the step.
+        """
         drift, middle = self.drift * v, len(self.table.c) // 2
         still = np.zeros_like(drift)
-        if self.kept is None:  # Jacobian for all nodes: that of the beam at rest, in these coordinates
+        if self.kept is None:  # the Jacobian of the beam at rest in these coordinates serves all nodes
             here = carrier.at(slice(middle, middle + 1)), q[None], still[:1], still[:1]
             tangents = self.system.tangents(*here, self.system.residual(*here))
             self.kept = tangents[:, 0], self._factorize(tangents)
@@ -251,8 +262,8 @@ class _Step:
     ) -> np.ndarray:
         """Solve for accelerations at the nodes by Newton's method, from a guess a.
 
-        LU factors are reused while it converges fast.  `drifted` are the coordinates at the nodes for zero
-        acceleration, v the velocities at the start of the step.
+        The LU factors of the Jacobian are reused as long as the method converges fast.  `drifted` are the
+        coordinates at the nodes for zero acceleration, v the velocities at the start of the step.
         """
         start, last = np.stack([drifted, np.broadcast_to(v, a.shape), np.zeros_like(a)]), np.inf
         for iteration in range(_ITERATIONS):
@@ -275,7 +286,7 @@ class _Step:
             if size > _FAST * last:
                 factors = None
             last = size
-        raise StepNotSolved("the equations of a step were not solved: take shorter steps")
+        raise StepNotSolved("Newton's method did not converge in a time step: take shorter steps")
 
     def _balances(self, residual: np.ndarray, motion: np.ndarray) -> bool:
         """Return whether a residual is only rounding error of the elastic forces."""

@@ -43,7 +43,7 @@ class ElasticaSystem(BeamInSpaceSystem):
 
     @cached_property
     def conditions(self) -> tuple[bool, bool, bool]:
-        """Whether the equations have moments of inertia, damping, and rotation about an axis in the plane."""
+        """Whether there are moments of inertia, damping, and rotation about an axis in the bending plane."""
         beam = self.elastica.beam
         return bool(beam.masses.inertia.any()), bool(beam.damping.any()), bool(self.elastica.axis[1])
 

@@ -179,7 +179,12 @@ def _maps_to_end(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
 
 
 def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Compute the increments of coordinates and velocities over steps from the accelerations at nodes."""
+    """Compute the increments of coordinates and velocities over N steps by the accelerations at the nodes.
+
+    `a` has the maps from some vector, such as the state at the start, to the accelerations at the nodes of
+    each step, (N, s n, columns); the result has the maps from this vector to the increments, (N, 2 n,
+    columns).
+    """
     N, rows, columns = a.shape
     weights = np.stack([h**2 * table.b2, h * table.b])
     n = rows // len(table.c)
@@ -187,7 +192,12 @@ def increment(a: np.ndarray, h: float, table: Tableau) -> np.ndarray:
 
 
 def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
-    """Add q + h v and v, the motion without acceleration, to maps whose columns of q begin at `first`."""
+    """Add the motion without acceleration to maps from the start of each step to (q, v) at its end.
+
+    Without acceleration, the coordinates at the end are q + h v, and the velocities v.  The maps `step`,
+    (N, 2 n, columns), are changed in place; their columns for the q and then the v at the start begin at the
+    index `first`.
+    """
     n = step.shape[1] // 2
     step[:, np.arange(2 * n), first + np.arange(2 * n)] += 1
     step[:, np.arange(n), first + n + np.arange(n)] += h
@@ -195,7 +205,7 @@ def add_drift(step: np.ndarray, h: float, first: int) -> np.ndarray:
 
 
 def left_side(C: np.ndarray | None, K: np.ndarray, h: float, table: Tableau) -> np.ndarray:
-    """Build the matrix of the collocation equations of each step, for the accelerations at all nodes."""
+    """Build the matrices (N, s n, s n) of the collocation equations for the accelerations at the nodes."""
     N, s, n, _ = K.shape
     matrix = np.empty((N, s, n, s, n))
     np.multiply((h**2 * table.A2)[:, None, :, None], K[:, :, :, None, :], out=matrix)
@@ -219,7 +229,7 @@ def right_side(C: np.ndarray | None, K: np.ndarray, f: np.ndarray, h: float, tab
 
 
 def components(q: np.ndarray, outputs: np.ndarray) -> np.ndarray:
-    """Evaluate linear functions with coefficients `outputs` (rows) of coordinates q (last axis)."""
+    """Evaluate linear functions of coordinates q (last axis); rows of `outputs` are their coefficients."""
     return np.stack([q @ output for output in outputs], axis=-1)
 
 
@@ -349,7 +359,7 @@ def propagate(
         with np.errstate(over="ignore", invalid="ignore"):
             powers = _advance_block(maps, state[block.start : block.stop + 1], powers)
         if not (np.abs(state[block.stop]) < MOST).all():
-            raise growth_without_bound(f"past {MOST:g} before t = {t0 + h * block.stop:.4g} s")
+            raise growth_without_bound(f"to states past {MOST:g} before t = {t0 + h * block.stop:.4g} s")
         acceleration[block] = (maps.acceleration @ state[block, None, :, None])[..., 0]
     return Segment(t0, h, state, acceleration)
 
@@ -364,7 +374,11 @@ def growth_without_bound(how_far: str) -> ArithmeticError:
 
 
 def _advance_block(maps: StepMaps, state: np.ndarray, powers: np.ndarray | None) -> np.ndarray | None:
-    """Compute the states state[1:] from state[0]; equal steps use powers of one map, which are returned."""
+    """Compute the states state[1:] of a block of steps from state[0], in place.
+
+    Equal steps use the powers of one map.  They are taken from `powers` if these fit, and returned for the
+    next block; None is returned for unequal steps.
+    """
     if maps.step_extended is not None:
         if powers is None or len(powers) < len(maps.step) or (powers[0] != maps.step[0]).any():
             # Powers of the map cause one rounding error per block, instead of one per step.

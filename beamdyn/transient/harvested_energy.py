@@ -92,7 +92,7 @@ class TransientHarvest(JudgedByRepeating):
         yield f"time {error_at_most(self.run.time_error / (self.run.largest or 1.0))}"
 
     def judged(self, found: TransientHarvest) -> np.ndarray:
-        """Return the harvested energy of `found`, for which the model error is estimated: shape ()."""
+        """Return the harvested energy of `found`, shape (): the value whose model error is stated."""
         return np.array(found.energy[-1])
 
     def plot(self, ax: Axes | None = None) -> Axes:
@@ -154,5 +154,5 @@ def transient_harvest(run: Transient) -> TransientHarvest:
 
 
 def _at(row: Voltage, run: Transient, t: np.ndarray) -> np.ndarray:
-    """Evaluate the quantity of the circuit given by the coefficients `row` at times t [s]."""
+    """Evaluate a quantity of the circuit, such as its voltage, with the coefficients `row` at times t [s]."""
     return run.path.at(t)[row.order] @ row.row

@@ -33,13 +33,15 @@ from beamdyn.transient.trajectory import Trajectory, magnitude
 from beamdyn.transient.weakly_modulated import propagate_modulated
 
 _WORTH_A_SEGMENT = 500  # number of steps whose cost equals that of the preparation of a segment
-_TIMES_COMPARED = 257  # number of times at which the equations are compared with those at the start
+_TIMES_COMPARED = 257  # number of times at which it is checked whether the equations are constant
 _BALANCE = 1e-13  # residual force, over the largest force, below which it is a rounding error of equilibrium
 # Fraction of the tolerance allowed for truncating the series in steps with weakly varying stiffness.
 _SERIES_SHARE = 0.1
 _ORDER_ACROSS_SAMPLES = 3  # order of the error of steps across samples, where the acceleration has kinks
-_FEW_STEPS = 4  # sample intervals in a step above which steps of one interval are tried before shorter ones
-_CEILED = 1.02  # factor that lengthens steps: rounding up their number (some hundreds) shortens them
+# If the last steps spanned more than this number of sample intervals, and the next ones would be shorter than
+# an interval, steps of one interval are tried first.
+_FEW_STEPS = 4
+_CEILED = 1.02  # factor by which steps are lengthened: rounding up their number (some hundreds) shortens them
 
 
 def integrate(
@@ -96,7 +98,10 @@ class _Start(NamedTuple):
 
 
 def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
-    """Build the motion of a beam at rest, if the equations are constant and the forces in equilibrium."""
+    """Build the motion of a beam that stays at rest, if the equations are constant and forces in equilibrium.
+
+    Return None if this is not so.
+    """
     system, y0, t_end, tolerance = start
     if system.motion.steady_start > 0:
         return None
@@ -113,8 +118,8 @@ def _rest_in_equilibrium(start: _Start) -> Trajectory | None:
 def _attempt(start: _Start, step_size: StepSize, _: Attempt | None) -> Attempt:
     """Integrate with equal steps in each segment.
 
-    Neighbouring parts of a smooth piece are joined if the additional steps cost less than the preparation of
-    another segment.
+    Neighbouring parts of a smooth piece of the motion are joined to one segment, with the denser steps of the
+    two, if the additional steps cost less than the preparation of another segment.
     """
     system, y0, t_end, tolerance = start
     breakpoints = set(record_steps.smooth_piece_ends(system.motion, t_end))
@@ -194,7 +199,11 @@ def follow_steps(
 def _propagate(
     system: ModalSystem, edges: np.ndarray, steps: Sequence[int], y0: np.ndarray, tolerance: float
 ) -> tuple[Segment, ...]:
-    """Integrate segment by segment: by series for weakly modulated stiffness where these converge."""
+    """Integrate from y0 over the segments with the ends `edges` [s], each in its number of equal steps.
+
+    A segment whose stiffness varies weakly is integrated in closed form or by a series if one of them
+    converges, otherwise by Gauss collocation.
+    """
     accuracy = _SERIES_SHARE * tolerance
 
     def propagate_one(a: float, b: float, count: int, q: np.ndarray, v: np.ndarray) -> Segment:

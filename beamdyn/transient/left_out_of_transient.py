@@ -1,7 +1,7 @@
 """Changes of a transient's largest deflection by physical effects that its model neglects.
 
-If an effect hardly changes the lowest natural frequencies and their phase at the end of the run, the change
-of the deflection is estimated from that of the first frequency; otherwise the run is repeated with the
+If an effect hardly changes the lowest natural frequencies and their phases at the end of the run, the change
+of the deflection is estimated from the change of the first frequency; otherwise the run is repeated with the
 effect.  A run with large deflection takes far longer: it is repeated only if it is short; otherwise the
 change is estimated from the static deflection and the backbone curve (frequency over amplitude).
 """
@@ -72,7 +72,10 @@ def _peak(found: Solution, window: tuple[float, float] | None) -> float:
 
 
 def _shifts_of_frequencies(model: Model, speed: float, t_end: float) -> dict[str, float]:
-    """Compute relative changes of the first frequency by the effects that hardly change the lowest two."""
+    """Compute relative changes of the first frequency by those effects that hardly change the motion.
+
+    These change neither the lowest two frequencies nor their phases at `t_end` [s] noticeably.
+    """
     s = model.solver.solve(np.array([speed]), min(_MODES, model.solver.size)).eigenvalue
     omega, changes = np.abs(s).max(), left_out_of_modes(model, np.array([speed]), s).changes
     largest = {name: np.abs(each).max() for name, each in changes.items() if name != LARGE_DEFLECTION.name}

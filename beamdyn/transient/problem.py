@@ -81,7 +81,7 @@ def choose_for_basis(
     if scene.bends_in_space:
         plain = replace(scene.straightened, physics=Physics(planes=scene.physics.planes))
         return Model(scene, choose_for_basis(plain, discretization, basis, tolerance).discretization)
-    if scene.physics.large_deflection:  # the basis consists of modes of the straight beam all the same
+    if scene.physics.large_deflection:  # here, too, the basis consists of modes of the straight beam
         return choose_for_basis(scene.straightened, discretization, basis, tolerance).of(scene)
     plain = replace(scene, physics=replace(scene.physics, stretch=False)).is_slender_beam_in_one_plane
     if plain or not scene.is_damped:
@@ -190,7 +190,7 @@ class TransientProblem(FieldsOnly):
         return basis and self._with_basis(basis)
 
     def _with_basis(self, basis: ModalBasis) -> Self:
-        """Return the problem with a larger basis, by "ritz" if the discretization has too few functions."""
+        """Return the problem with a larger basis; with "ritz" if the discretization has too few functions."""
         assert basis.modes is not None and self.basis.modes is not None
         initial = self.initial
         if not isinstance(initial, str):
@@ -229,7 +229,7 @@ class TransientProblem(FieldsOnly):
         return solved and (solved.system, solved.path)
 
     def distance_with_more_modes(self, path: Trajectory, own: ModalSystem) -> float | None:
-        """Estimate the distance [m] of a path's tip deflection from that of a motion with more modes.
+        """Estimate the largest difference [m] between tip deflections of a path and of one with more modes.
 
         `own` are the equations of the path.  None if there are no further modes, or no valid estimate.
         """
@@ -271,7 +271,7 @@ def initial_state(initial: str | np.ndarray, system: AnySystem) -> np.ndarray:
 def _equilibrium(system: ModalSystem) -> np.ndarray:
     """Compute the static equilibrium under the loads at time 0; a ValueError if the root turns freely.
 
-    A circuit is without voltage there, and the flux, its last coordinate, begins at 0.
+    In this equilibrium a circuit has no voltage; its flux, the last coordinate, begins at 0.
     """
     _, K, f = system.coefficients(np.zeros(()))
     bent, found = slice(len(f) - (system.equations.voltage is not None)), np.zeros_like(f)

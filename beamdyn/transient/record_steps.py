@@ -39,8 +39,8 @@ _SLACK = 1e-6  # fraction of a step by which rounding may lengthen it
 # Largest and smallest number of equal steps whose maps are expanded about one mean motion of the root.
 _EQUAL_STEPS, _FEWEST_EQUAL = 1024, 128
 _SAME_LENGTH = 1e-6  # fraction of a step by which lengths and ends of equal steps may differ
-# In steps of at least the first number of pieces (sample intervals), the second number of nodes or stages in
-# each piece suffices.
+# If all steps have at least the first number of pieces (sample intervals), the second number of nodes or
+# stages in each piece suffices.
 _MANY_PIECES, _IN_EACH = 4, 5
 
 
@@ -110,7 +110,7 @@ class RecordSteps:
 
     @cached_property
     def blocks(self) -> list[slice]:
-        """Divide the steps into blocks solved as one batch: equal steps of one piece each, or other steps."""
+        """Divide the steps into blocks solved as one batch each: equal steps of one piece, or other steps."""
         single = self.counts == 1
         cuts = np.flatnonzero(~(_are_same(self.h) & single[1:] & single[:-1])) + 1
         runs = [(a, b) for a, b in pairwise([0, *cuts.tolist(), len(self)]) if b - a >= _FEWEST_EQUAL]
@@ -140,7 +140,10 @@ class RecordSteps:
         return RecordSteps(self.piece_start, self.piece_width, self.piece_start, self.piece_width, index)
 
     def root(self, system: ModalSystem, table: gauss.Tableau) -> RootMotion:
-        """Compute the root's motion at the nodes of all steps, by least-squares polynomials."""
+        """Compute the root's motion at the nodes of all steps.
+
+        In each step the motion is replaced by the nearest polynomial, by least squares.
+        """
         within = gauss.tableau(self.nodes_in_piece(len(table.c)))
         root = system.root(self.piece_start[:, None] + self.piece_width[:, None] * within.c)
         if len(self.piece_start) == len(self):
@@ -163,14 +166,14 @@ class RecordSteps:
 def _wanted_steps(
     system: ModalSystem, t_end: float, step_size: StepCounter
 ) -> Callable[[np.ndarray], np.ndarray]:
-    """Build the function that computes, for a step size, the number of steps from 0 to each time [s]."""
+    """Build the function that computes the number of steps that a step size requires from 0 to a time [s]."""
     times = np.linspace(0.0, t_end, _STRETCHES + 1)
     counts = [step_size.count_steps(system, a, b) for a, b in pairwise(times)]
     return partial(np.interp, xp=times, fp=np.concatenate([[0], np.cumsum(counts)]))
 
 
 def most_steps_in_piece(system: ModalSystem, t_end: float, step_size: StepCounter) -> float:
-    """Find the largest number of steps between two neighbouring samples for a step size."""
+    """Find the largest number of steps between two neighbouring samples that a step size requires."""
     wanted = _wanted_steps(system, t_end, step_size)
     return float(np.diff(wanted(smooth_piece_ends(system.motion, t_end))).max())
 
@@ -299,7 +302,11 @@ def _expand(
     acceleration: np.ndarray,
     accuracy: float,
 ) -> bool:
-    """Fill in a block of equal steps by maps from a series; False if they are unequal or vary too much."""
+    """Compute states and accelerations in a block of equal steps, in place, by maps from a series.
+
+    Return False, without a result, if the steps are few or unequal, or the equations vary too much for the
+    series.
+    """
     count, n = block.stop - block.start, system.size
     if count < _FEWEST_EQUAL or not steps.are_equal(block):
         return False

@@ -108,12 +108,12 @@ def integrate_by_solve_ivp(
     options = {"rtol": tolerance, "atol": 0.1 * tolerance * sizes + 1e-300, **options}
     if isinstance(method, type) and issubclass(method, GaussCollocation):
         if isinstance(system, BeamInSpaceSystem):
-            bound = "it integrates linear equations only, and those of large_deflection are not"
+            bound = "it integrates linear equations only, and large_deflection makes them nonlinear"
             raise InvalidValue("method", method.__name__, bound, "give 'auto'")
         options = {"system": system, **options}
     elif method in _JACOBIAN_METHODS:
         options = {"jac": system.jacobian, **options}
-    chosen: Any = method  # methods accepted by `check_method`
+    chosen: Any = method  # `check_method` has accepted it, so its type is not checked again
     result: Any = solve_ivp(system.rhs, (0.0, t_end), y0, method=chosen, dense_output=True, **options)
     if not result.success:
         raise ArithmeticError(f"solve_ivp stopped at t = {result.t[-1]:g} s: {result.message}")

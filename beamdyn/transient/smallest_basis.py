@@ -17,14 +17,14 @@ from beamdyn.transient.chunks import SweepRequest
 from beamdyn.transient.trajectory import SAMPLES
 from beamdyn.transient.transient import Transient, TransientRequest, warn_of_missed_modes
 
-# Largest computing work of a run, its steps times its squared number of coordinates (some seconds), for which
-# "auto" adds further modes.
+# "auto" adds further modes if the computing work of the run with them, its number of steps times its squared
+# number of coordinates, is at most this number, which takes some seconds.
 _MOST_WORK = 5e7
-# Largest work if the last added modes have divided the truncation error by less than _FAST.
+# The same limit if the modes that were added last divided the truncation error by less than _FAST.
 _SLOW_WORK = 5e6
 _FAST = 4.0
-# Up to the first number of modes, one mode is added instead of several, if the truncation error is at most
-# the second number times the tolerance.
+# One mode is added, instead of several, to at most the first number of modes if the truncation error is at
+# most the second number times the tolerance.
 _FEW_MODES, _NEARLY = 4, 30.0
 _TIGHT = 1e-5  # tolerance that is tried too, if no basis meets a smaller requested tolerance
 
@@ -103,7 +103,7 @@ def list_samples(speeds: tuple[float, ...]) -> list[float]:
 
 @one_blas_thread()
 def run_samples(request: SweepRequest, speeds: tuple[float, ...]) -> list[Transient]:
-    """Run sampled cases with enough modes; each search starts one mode below the number of the last case.
+    """Run sampled cases with enough modes; each search starts with one mode fewer than the last case has.
 
     If some cases use modes at their speeds and others modes at rest, all are run with one kind: modes at rest
     if these meet the tolerance with fewer coordinates, else modes at the speeds if these meet it, else the

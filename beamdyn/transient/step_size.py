@@ -50,11 +50,11 @@ class StepSize:
         return cls(_REFERENCE_PHASE * (tolerance / 1e-5) ** (1 / ERROR_ORDER))
 
     def count_steps(self, system: ModalSystem, start: float, end: float) -> int:
-        """Count the equal steps from start to end [s]."""
+        """Count the equal steps that are needed from start to end [s]."""
         return self.count_steps_of_each(system, np.array([start, end]))[0]
 
     def count_steps_of_each(self, system: ModalSystem, ends: np.ndarray) -> list[int]:
-        """Count the equal steps of neighbouring segments with given ends [s]."""
+        """Count the equal steps that are needed in each of neighbouring segments with given ends [s]."""
         sample = system.motion.at(np.linspace(ends[:-1], ends[1:], 9, axis=1))
         speed = np.abs(sample.speed).max(axis=1)
         multiple = max((line.multiple for line in system.motion.lines), default=0.0)
@@ -74,7 +74,10 @@ class StepSize:
         cumulative = np.cumsum((error.modes * error.unresolved)[::-1])[::-1]
         # The modes above this number together have an error below a quarter of the bound.
         modes = int((cumulative > bound / 4).sum())
-        if modes > self.modes:  # resolve more modes, no more accurately than the highest needs
+        if modes > self.modes:
+            # Unresolved modes have an error as large as their motion.  `share` is the relative error to which
+            # the motion of the highest mode to be resolved is reduced, so that it meets its part of the
+            # bound.
             share = min(bound / 4 / cumulative[modes - 1], _LOOSEST_TOLERANCE)
             return StepSize(max(self.phase, StepSize.from_tolerance(share).phase), modes)
         shrink = max(0.3, 0.9 * (bound / error.total) ** (1 / order))
@@ -163,7 +166,10 @@ def check_number_of_steps(steps: int, size: int, t_end: float) -> None:
 
 
 def split_at_breakpoints(motion: Motion, t_end: float) -> np.ndarray:
-    """Split a run at breakpoints of the motion, and segments of changing speed into parts: all ends [s]."""
+    """Split a run into segments for the choice of the step size; return all their ends [s].
+
+    The run is split at the breakpoints of the motion; segments of changing speed are split into four parts.
+    """
     parts = []
     for a, b in pairwise(smooth_piece_ends(motion, t_end)):
         speed_changes = np.ptp(motion.at(np.linspace(a, b, 9)[1:-1]).speed) > 0

@@ -74,8 +74,8 @@ class ModalSystem:
     def from_rest(cls, equations: Equations, motion: Motion, t_end: float) -> ModalSystem:
         """Build the equations of a run from rest, without coordinates that no load excites.
 
-        Planes without loads and coupling are omitted; loads are sampled over the run and each smooth
-        interval.
+        Planes of bending without loads and coupling are omitted.  Whether a load is 0 is decided from samples
+        over the run, and in each interval in which the motion is smooth.
         """
         if len(equations.connected) > 1:
             spread = t_end * (_GOLDEN * np.arange(SPEED_SAMPLES) % 1)
@@ -132,9 +132,10 @@ class ModalSystem:
         return self._split(slow, self.motion.steady_start <= start, varying, excess, lines)
 
     def about_mean(self, start: float, end: float) -> ModulatedSystem | None:
-        """Split the equations from start to end [s] into those of the mean motion, and a varying stiffness.
+        """Split the equations from start to end [s] into mean coefficients and a small varying stiffness.
 
-        The result is None if damping or gyroscopic terms vary.
+        The mean coefficients are those for the mean of the root's motion.  The result is None if damping or
+        gyroscopic terms vary.
         """
         stiffness, damping, _ = self.equations.matrices
         if not set(damping) <= {"unity"}:

@@ -179,14 +179,19 @@ def _error_of_steps(system: ModalSystem, segment: Segment, frequencies: np.ndarr
 
 
 def size_per_coordinate(outputs: np.ndarray) -> np.ndarray:
-    """Compute the magnitude of a vector that a unit of each coordinate causes, from its components (rows)."""
+    """Compute the magnitude of an output vector, such as the tip deflection, per unit of each coordinate.
+
+    The rows of `outputs` are the components of the vector per unit of each coordinate.
+    """
     return np.hypot.reduce(np.abs(outputs))
 
 
 def _total_of_local_errors(local: np.ndarray, delta: np.ndarray, steps: int) -> np.ndarray:
-    """Bound each coordinate's error after some steps by local errors and the largest phase error of a step.
+    """Bound the error of each coordinate after a number of steps.
 
-    The bound is the sum of all local errors, or of the largest ones until the phase is lost, if that is less.
+    Local errors add up until the phase of a coordinate is lost, after 2 / delta steps, where delta [rad] is
+    its largest phase error per step.  The bound is the sum of all local errors or, if this is less, the
+    largest local error times 2 / delta.
     """
     until_lost = 2 / np.maximum(delta, 1e-30)  # number of steps until the phase is lost
     return np.minimum(steps * local.mean(axis=0), until_lost * local.max(axis=0))
@@ -254,7 +259,8 @@ def _error_of_record(system: ModalSystem, segment: RecordSegment, outputs: np.nd
     middle = steps.piece_start + steps.piece_width / 2
     slope = np.diff(system.equations.load(system.root(middle)), axis=0) / np.diff(middle)[:, None]
     bend = np.pad(np.abs(np.diff(slope, axis=0)).sum(axis=1), 1, mode="edge")
-    # Changes of the load's slope change displacements in proportion to the cube of the step size.
+    # Steps are ranked by their length, and by the roughness of the load: a change of the load's slope changes
+    # displacements in proportion to the cube of the step size.
     kinds = steps.h, steps.h**3 * np.maximum.reduceat(bend, steps.first)
     worst = np.unique([np.argsort(kind)[-_MOST_OF_A_KIND:] for kind in kinds])
     for chosen, represented in ((choose_checked_steps(count, most), count), (worst, len(worst))):

@@ -185,9 +185,10 @@ def _top_of_parabola(left: np.ndarray, middle: np.ndarray, right: np.ndarray) ->
 
 
 def _candidates(times: np.ndarray, size: np.ndarray, start: float, end: float) -> np.ndarray:
-    """Choose the times of a window's highest samples, and its two ends, perhaps repeated: (_CANDIDATES + 2,).
+    """Choose the times of the 12 highest samples in a window, and its two ends: shape (14,).
 
-    Samples are ranked by the maximum of the parabola through three neighbours.
+    Times repeat if there are fewer samples.  Samples are ranked by the maximum of the parabola through three
+    neighbours.
     """
     first, last = np.searchsorted(times, start), np.searchsorted(times, end, side="right")
     size = size[first:last]
@@ -218,7 +219,7 @@ def magnitude_of(deflections: np.ndarray) -> np.ndarray:
 
 
 def in_direction(deflections: np.ndarray, direction: int) -> np.ndarray:
-    """Select deflections in one direction from those in each, (..., 1 or 2); 0 if it is not modelled."""
+    """Select one direction from deflections (..., 1 or 2); return 0 if the direction is not modelled."""
     if direction >= deflections.shape[-1]:
         return np.zeros(deflections.shape[:-1])
     return deflections[..., direction]

@@ -39,7 +39,8 @@ from beamdyn.transient.trajectory import Path, Trajectory, in_direction, magnitu
 _LIMIT_DIFFERENCE = 0.3
 _TIMES_COMPARED = 20_000  # largest number of times at which two runs are compared
 _MOTIONS_WITH_MORE_MODES = frozenset({"refined", "with_more_modes"})
-# Fraction of the time-integration error of a motion that is included in its modal truncation error.
+# The modal truncation error is estimated along the computed motion of a run, and inherits the error of this
+# motion: this fraction of the run's time-integration error is added to the estimate.
 _OF_TIME_ERROR = 0.1
 # Computed attributes that are kept in a copy with further warnings.
 _COMPUTED = *_MOTIONS_WITH_MORE_MODES, "mode_error"
@@ -213,8 +214,8 @@ class Transient(StatesModelError):
     ) -> np.ndarray:
         """Compute the deflection [m] at positions x [m] and times t [s]: shape (len(t), len(x)).
 
-        Direction 0 is the bending direction at the root, 1 is perpendicular to it and to the axis; in this a
-        beam with one plane is rigid.
+        Direction 0 is the bending direction at the root, 1 is perpendicular to it and to the axis: a beam
+        with one plane of bending is rigid in direction 1.
         """
         xi = np.asarray(x) / self.scene.beam.length
         return self.system.shape(self.at(t)[0], xi, direction)

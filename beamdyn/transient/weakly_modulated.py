@@ -135,7 +135,10 @@ class _StepMapSeries:
         return gauss.add_drift(gauss.increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
 
     def _parts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the maps from loads at nodes to the state at the end, and W = R - Z X0 as in the class."""
+        """Compute the maps from loads at the nodes to the state at the end of a step, and W = R - Z X0.
+
+        R, Z and X0 are explained in the class.
+        """
         P, s, n = len(self.Y), len(self.table.c), self.size
         ends = gauss.increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
         W = self.R - self.Z @ self.X0[:, None]
@@ -144,7 +147,7 @@ class _StepMapSeries:
     def first(self) -> np.ndarray:
         """Compute the terms of first order in the stiffness factors in the maps to the end of a step.
 
-        There is one for each factor and node (second axis).
+        There is one term for each factor and node, along the second axis.
         """
         ends, W = self._parts()
         found = ends[:, None] @ W
@@ -223,7 +226,7 @@ class _Expansion:
             maps.append(chebyshev.Polynomials(values, size, allowed).shortened(rough))
         change = float(ratio @ largest)  # ratio of the first-order change to the unperturbed map
         X0, Y = chebyshev.expand(point.X0), chebyshev.expand(point.Y)
-        # Conversion from accelerations to displacements.
+        # Errors of accelerations are compared as those of displacements: divided by squared frequencies.
         forces = np.tile(rows[point.size :] ** 2, len(table.c))
         size = np.abs(X0 * (forces[:, None] * columns)).max(axis=(1, 2))
         terms = chebyshev.Polynomials(X0, size, min(chebyshev.NEGLIGIBLE * accuracy, 1.0) * size.max())
@@ -257,7 +260,7 @@ class _Block:
         return chebyshev.polynomials(x, max(len(values) for values in (*self.maps, self.X0, self.Y)))
 
     def steps(self, T: np.ndarray, e: np.ndarray) -> np.ndarray:
-        """Compute maps of steps from the polynomials' values T at their starts, and from their factors e."""
+        """Compute maps of steps from the polynomials' values T at the steps' starts, and from factors e."""
         rows, columns = self.maps[0].shape[2:]
         # One sum for each precision: terms for which single precision suffices are summed in it.
         sums: dict[np.dtype, np.ndarray] = {}
@@ -284,7 +287,11 @@ class _Block:
 
 
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Multiply each polynomial in T by each monomial, row by row: these are weights for summing `values`."""
+    """Multiply each polynomial in T by each monomial, row by row.
+
+    Only as many polynomials are used as `values` has coefficients; the products are the weights with which
+    these coefficients are summed.
+    """
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
 
 
@@ -338,8 +345,8 @@ def propagate_modulated(
     t0, t1, steps, q0, v0, stages
         As for `propagate`.
     accuracy : float
-        Largest relative error by the truncation of the series, estimated as rho^3 times the number of
-        steps, where rho is the ratio of successive terms; and by that of the Chebyshev polynomials.
+        Largest allowed relative error by truncating the series, estimated as rho^3 times the number of steps,
+        where rho is the ratio of successive terms, and by truncating the Chebyshev polynomials.
 
     Returns
     -------

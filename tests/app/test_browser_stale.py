@@ -99,7 +99,7 @@ def test_a_hinge_turns_over_at_any_speed(opened):
     page = opened("beamdyn")
     unfold(page, "rest", "mount.root_stiffness")
     field(page, "root stiffness, k").fill("0")
-    expect(shown(page, "give the hinge a spring, or a beam that points outward")).to_be_visible()
+    expect(shown(page, "give the hinge a spring, or let the beam point outward")).to_be_visible()
     expect(page.locator(".headline:visible div", has_text="critical speed")).to_contain_text("0 rad/s")
     expect(page.locator(".q-field--error:visible")).to_have_count(0)
 

@@ -38,7 +38,7 @@ def test_a_delay_is_found_and_taken_out():
     np.testing.assert_allclose(found.deviation, 0.02, rtol=1e-2)  # runs of two ends differ by 1e-5
     np.testing.assert_allclose(found.rms, 0.02, rtol=1e-2)
     assert found.phase[0] < 0
-    assert "by which it is behind" in found.sentences()[0]
+    assert "by which the data are behind" in found.sentences()[0]
 
 
 def test_a_sign_that_is_turned_is_named_and_its_delay_is_not_half_a_period():

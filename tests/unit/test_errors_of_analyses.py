@@ -125,7 +125,7 @@ def test_modes_that_an_effect_adds_are_none_of_those_judged():
 def test_sensitivities_of_a_bent_beam_are_not_known():
     found = bd.frequency_sensitivities(BENT, 100.0, 1, ["beam.length"])
     assert np.isnan(found.left_out[LARGE]).all()
-    assert found.left_out_effects.not_known[LARGE] == "sensitivities are those of the linear equations"
+    assert found.left_out_effects.not_known[LARGE] == "sensitivities are computed for linear equations only"
 
 
 def test_what_has_no_value_says_why_nothing_is_known():

@@ -35,8 +35,8 @@ def compare(
     """Compare measured values with computed ones of a scene, and find possible causes of deviations.
 
     Histories are compared with the scene's motion from rest, aligned in time within half a period of the
-    first mode at rest; peaks with those of transients up to each speed; loads with those in equilibrium, and
-    responses at the measured frequencies, both at a steady speed.
+    first mode at rest; peaks with the peaks of transients up to each speed; loads with the loads in
+    equilibrium at a steady speed; and responses with the frequency responses at a steady speed.
 
     At each speed, measured frequencies are paired with computed ones by the smallest total distance, and by
     mode shapes if these were measured.  If a deviation exceeds the sum of measurement uncertainty, numerical
@@ -179,9 +179,10 @@ _PARTS = "computed", "mode", "allowance", "rounding", "error", "model_error", "l
 
 @dataclass(frozen=True)
 class _MeasuredRow:
-    """Measured values at one speed, together with the computed modes at that speed.
+    """Measured frequencies at one speed, together with the computed modes at that speed.
 
-    Arrays contain only the values that were measured.
+    Results have an entry for each frequency that was measured at this speed; `of_shapes` also has rows for
+    those that were not.
     """
 
     data: MeasuredFrequencies
@@ -202,7 +203,8 @@ class _MeasuredRow:
     def of_shapes(self) -> np.ndarray | None:
         """Modal assurance criterion (m, n) of measured and computed shapes.
 
-        If no shapes were measured, it is the result of `likeness_of_kinds`, or None.
+        If no shapes were measured, it is 1 where the measured and the computed mode are both torsional, or
+        both not, by the labels of the data, and 0 elsewhere; None if no label mentions torsion.
         """
         data, modes = self.data, self.modes
         if data.shapes is None:
@@ -270,8 +272,8 @@ class _MeasuredRow:
             yield Words(f"mode {k + 1} of the scene, {frequency} at ", Speeds(self.data.speeds[self.row]))
 
 
-# Possible mistakes of units: ratio of given to correct values, as text (the key) and as a number; and in
-# which unit the values would then be.
+# Possible mistakes of units: ratio of given to correct values, as text (the key) and as a number; and words
+# for the unit in which the values would then be.
 _UNITS: Mapping[str, tuple[float, str]] = {
     "2 pi": (2 * pi, "in rad/s, and read as Hz"),
     "60": (60.0, "in 1/min, and read as Hz"),

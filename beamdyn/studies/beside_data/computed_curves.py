@@ -103,7 +103,7 @@ def computed_response(scene: Scene, data: MeasuredResponse) -> ComputedCurves:
     if value.shape[1] != 1:
         bound = "a rotating beam responds to this input at two frequencies"
         raise InvalidValue(
-            "input", data.input, bound, "give bending, across, n3 or a force that turns with it"
+            "input", data.input, bound, "give bending, across, n3 or a force that turns with the beam"
         )
     phase = np.nan
     if data.phase is None:
@@ -184,7 +184,8 @@ def _delay(
 ) -> float:
     """Find the delay [s], between two limits, for which the computed curves agree best with measured ones.
 
-    If opposite signs of curves reduce the sum of squares to less than a quarter, their delay is returned.
+    If the sum of squared differences falls below a quarter when some curves are taken with the opposite sign,
+    the delay of best agreement with these signs is returned.
     """
     some = slice(None, None, 1 + len(data.time) // _COMPARED)
     t, values = data.time[some], data.value[some]
@@ -192,7 +193,7 @@ def _delay(
     sizes[sizes == 0] = 1.0
 
     def squares(delay: float) -> np.ndarray:
-        """Compute sums of squared differences of each curve, as it is and with opposite sign: two rows."""
+        """Compute sums of squared differences for each curve (columns): as it is, and with opposite sign."""
         curves = at(t - delay)
         return np.array([(((values - sign * curves) / sizes) ** 2).sum(axis=0) for sign in (1, -1)])
 

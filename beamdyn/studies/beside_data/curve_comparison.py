@@ -223,7 +223,7 @@ class CurveComparison(SceneResult):
         if self.along == "frequency":
             return f", {abs(phase):.3g} deg {side} there"
         late = f"{abs(self.delay):.3g} s ({abs(phase):.3g} deg of its main frequency)"
-        return f", after a shift by {late}, by which it is {side}"
+        return f", after a shift by {late}, by which the data are {side}"
 
     def _reason(self, k: int) -> str:
         """State the reason for the verdict on curve k."""

@@ -82,7 +82,7 @@ class Fitting:
             found = natural_modes(opening, float(np.abs(self.data.speeds).max()), self.modes)
         if found.scene.physics.large_deflection:
             remedy = Words("leave it out, or try values by ", Named("bd.study", "beamdyn study"))
-            bound = "a fit uses the derivatives of the linear equations"
+            bound = "a fit needs derivatives, which are computed for linear equations only"
             raise InvalidValue("physics.large_deflection", True, bound, remedy)
         return found
 

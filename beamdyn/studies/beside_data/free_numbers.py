@@ -104,7 +104,7 @@ class FreeNumber:
 
 
 def opened(scene: Scene, paths: Sequence[str]) -> Scene:
-    """Return the scene with the root springs and the tip body that the paths name, added if it has none.
+    """Add to a scene the root springs and the tip body that the paths name, if it has none.
 
     An added spring has the finite stiffness 10 EI/L; an added tip body is massless.
     """
@@ -118,7 +118,7 @@ def opened(scene: Scene, paths: Sequence[str]) -> Scene:
 
 
 def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeNumber, ...]:
-    """Return the numbers with the given paths; bounds [unit] of None are replaced by typical ones.
+    """Return the numbers with the given paths; a number whose bounds [unit] are None gets typical bounds.
 
     Raises
     ------

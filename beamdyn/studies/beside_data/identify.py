@@ -30,8 +30,8 @@ from beamdyn.studies.beside_data.separability import FINEST, Information, not_se
 MOST_SOLVES = 40  # largest number of scenes whose modes are computed, per unknown number
 _LEVEL = 0.95
 _CHANCE = 0.01  # probability of reporting an outlier in data without outliers
-# Quantile of the sum of squares above which a fit counts as poor, is repeated from further starts, and is
-# reported.
+# A fit counts as poor if its sum of squares exceeds this quantile: it is repeated from further starts, and a
+# warning is given.
 _LIKELY = 0.999
 _NOTHING = 1e-20  # sum of squared relative deviations below which data count as exact
 
@@ -152,7 +152,7 @@ class _Told:
 
     @cached_property
     def _uncertainty(self) -> np.ndarray:
-        """Standard deviation of each residual, at least that for the relative uncertainty `FINEST`."""
+        """Standard deviation of each residual, at least that by the relative uncertainty 1e-6 (`FINEST`)."""
         least = FINEST * self._measured / self._fitting.weight[self.fit.pairs != NO_MODE]
         return np.maximum(np.nan_to_num(self._deviation), least)
 
@@ -199,7 +199,10 @@ class _Told:
 
     @cached_property
     def _standardized(self) -> np.ndarray:
-        """Residuals divided by their own standard deviation in the fit."""
+        """Residuals divided by their standard deviations after the fit.
+
+        These are sqrt(1 - leverage) times the standard deviations of the data.
+        """
         spread = np.sqrt(np.maximum(1 - self._information.leverage, FINEST))
         return self._residual / (self._uncertainty * spread)
 

@@ -26,10 +26,11 @@ from beamdyn.studies.beside_data.fit import FittedModes, Fitting
 LARGEST = 1.0  # standard error of a variable of size 1 above which its number is undetermined
 # Smallest relative uncertainty of a frequency that is assumed in the decision about identifiability.
 FINEST = 1e-6
-# Smallest fraction of `LARGEST` that a direction must add to a number's error for the number to be listed.
+# A number is listed with an undetermined direction of the variables if this direction contributes at least
+# this fraction of `LARGEST` to its standard error.
 _TAKES_PART = 0.5
-# Smallest singular value used, in place of smaller ones: the bounds of a variable are about ten times its
-# size apart.
+# Smaller singular values are replaced by this one: the bounds of a variable are about ten times its size
+# apart.
 _BOUND = 0.1
 # Smallest relative change of a measurement, per unit step of the variables along a direction, for which it
 # determines that direction.
@@ -127,7 +128,7 @@ def not_separable(modes: FittedModes, lost: list[tuple[np.ndarray, np.ndarray]])
 
 
 def _telling(modes: FittedModes, direction: np.ndarray) -> list[str]:
-    """List the additional measurements whose results change along a direction of the variables."""
+    """List the additional measurements whose results change clearly along a direction of the variables."""
     low, high = modes.fitting.limits
     ends = [np.clip(modes.x + step * direction, low, high) for step in (-_STEP, _STEP)]
     change = float(np.linalg.norm(ends[1] - ends[0]))

@@ -29,7 +29,8 @@ _WITHIN = {  # numbers that may be wrong, and the least and largest ratio of the
 _HEAVIEST = 2.0  # largest mass of a tip body, over that of the beam
 _SOLVES = 25  # largest number of scenes whose modes are computed for the fit of one number
 _TOLERANCE = 1e-7  # relative change of a number below which its fit ends
-# Relative frequency change by a change of a number by its full size, below which the number explains nothing.
+# A number explains nothing if a change by its full size would change all frequencies by less than this
+# fraction.
 _MATTERS = 1e-3
 _DIGITS = 3  # number of significant digits of values in sentences
 # Number of digits before the decimal point up to which a rounded value is written without an exponent.
@@ -81,7 +82,9 @@ class OneNumberFit:
 
 
 def explain(scene: Scene, data: MeasuredFrequencies, bound: np.ndarray) -> tuple[OneNumberFit, ...]:
-    """Fit each number alone to all data; order the fits: explanations first, then by remaining deviation.
+    """Fit each number alone to all data; return the fits that explain the data first, then the others.
+
+    In both groups the fits are in order of their remaining deviation.
 
     Parameters
     ----------
@@ -134,7 +137,7 @@ def _physical(scene: Scene, free: FreeNumber) -> tuple[float, float]:
 def _explanation(
     scene: Scene, data: MeasuredFrequencies, free: FreeNumber, allowed: np.ndarray
 ) -> OneNumberFit | None:
-    """Fit one number to all values; None if it hardly changes frequencies or if it exceeds its bounds."""
+    """Fit one number, within its bounds, to all data; return None if it hardly changes frequencies."""
     weight = np.maximum(allowed, _SLACK * np.nan_to_num(data.frequency, nan=1.0))
     fitting = Fitting(scene, data, (free,), weight, _TOLERANCE)
     start = fitting.at(np.array([free.first]))

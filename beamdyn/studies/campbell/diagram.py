@@ -372,7 +372,10 @@ def _within_speeds(name: str, value: float, speeds: np.ndarray) -> float:
 
 
 def _name_modes(locus: Locus) -> tuple[str, ...]:
-    """Name the modes by the direction in which each mostly bends at the first speed, or by its kind."""
+    """Name each mode by the direction in which it mostly bends at the first speed.
+
+    A mode that is not one of bending is named by its kind, such as torsion.
+    """
     words, mount = [word for _, word in name_directions(locus.scene)], locus.scene.mount
     # With a negative cosine, the beam points outward, like a blade.
     is_blade = locus.scene.physics.planes == 2 or np.cos(mount.setting_angle) < 0
@@ -407,7 +410,8 @@ def _bound(
 ) -> tuple[list[tuple[str, FrequencyBounds]], list[str]]:
     """Compute guaranteed bounds of each scene at a speed.
 
-    Return bounds, warnings, and the reasons why other scenes have no bounds.
+    Return the bounds with the labels of their scenes; and sentences: warnings, and why other scenes have no
+    bounds.
     """
     bounded, refused = [], []
     for label, names, locus in named:

@@ -68,7 +68,8 @@ class LineCrossing:
 class _Root:
     """Speed at which a line meets a natural frequency, which is given by its index in ascending order.
 
-    `slope` is the derivative of their distance, both angular frequencies, with respect to the speed.
+    `slope` is the derivative, with respect to the speed, of the natural angular frequency minus that of the
+    line; `place` is the index.
     """
 
     line: Line
@@ -170,7 +171,7 @@ def _frequencies(locus: Locus, speeds: np.ndarray) -> np.ndarray:
     count = locus.ascending.shape[1]
     if locus.model.discretization.order is None:
         return np.abs(np.imag(locus.model.solver.eigenvalues(speeds, count)))
-    modes = locus.eigenvalue.shape[1]  # frequencies by elements are extrapolated, as in the locus
+    modes = locus.eigenvalue.shape[1]  # finite elements: extrapolated, as in the locus
     return np.abs(np.imag(solve_with_error(locus.model, speeds, modes, count - modes).eigen.eigenvalue))
 
 
@@ -191,7 +192,7 @@ def _node(locus: Locus, speed: float) -> int:
 
 
 def _tracked_mode(locus: Locus, root: _Root, omega: float) -> int | None:
-    """Return the tracked mode whose frequency the line meets at a root; None if no tracked mode does."""
+    """Return the index of the tracked mode whose frequency a line meets at a root; None if there is none."""
     node = _node(locus, root.speed)
     ends, tracked = locus.speeds[node : node + 2], np.abs(np.imag(locus.eigenvalue[node : node + 2]))
     modes = np.flatnonzero((locus.place[node : node + 2] == root.place).any(axis=0))

@@ -121,7 +121,7 @@ def _check_targets(targets: object) -> tuple[Target, ...]:
         raise InvalidValue("targets", targets, "give targets in a list", remedy)
     assert isinstance(targets, list | tuple)
     if sum(each.best is not None for each in targets) > 1:
-        bound = "only one answer can be the largest or smallest"
+        bound = "only one answer can be required to be the largest or smallest"
         raise InvalidValue("targets", [each.says for each in targets], bound, "give limits to the others")
     return tuple(targets)
 
@@ -147,8 +147,8 @@ class _BestDesign:
         _, error = self.search.known(self.x[None])
         rounded = np.where(np.abs(found) <= np.maximum(_SAME, error.T / DIFFERENCE), 0.0, found)
         level = [k for k in np.flatnonzero((rounded == 0).all(axis=0)).tolist() if not self._is_idle(k)]
-        # Derivatives of all results by these numbers vanish although the numbers have an effect (extrema):
-        # they are kept unrounded, so that the numbers do not count as without effect.
+        # At an extremum the derivatives by a number round to 0, although the number has an effect.  These
+        # derivatives are not rounded, as a number whose derivatives are all 0 counts as without effect.
         rounded[:, level] = found[:, level]
         return rounded
 
@@ -183,9 +183,10 @@ class _BestDesign:
                 yield target.says
 
     def _only_one_way(self) -> bool:
-        """Return whether results that miss their targets are monotone in each number over computed designs.
+        """Return whether monotone results explain why the design misses targets.
 
-        The design is then at the bounds that are best for each of these results.
+        They do if each result that misses its target is monotone in each number over all computed designs,
+        and the design is at those bounds of the numbers that are best for each of these results.
         """
         designs = self.search.designs
         excess = self.search.excess(designs)
@@ -204,7 +205,10 @@ class _BestDesign:
         return not self._met.all()
 
     def result(self, given: np.ndarray, start: float) -> FoundDesign:
-        """Build the result of a search that started at a time of `perf_counter` [s]."""
+        """Build the result of a search that started at a time of `perf_counter` [s].
+
+        `given` are the values of the numbers in the scene.
+        """
         search, x, proofs = self.search, self.x, Proofs(self.search, self.x)
         value, error = (each[0] for each in search.known(x[None]))
         studies = [search.studied(asked, x[None]) for asked in search.asked]

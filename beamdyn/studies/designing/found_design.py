@@ -28,7 +28,8 @@ class FoundDesign(SceneResult):
     names, units : tuple of str, shape (p,)
         Names of the numbers in scene files, and their SI units.
     given, value : ndarray, shape (p,)
-        Values in the scene, nan if it has none, and in the design [unit].
+        Values in the scene, and values in the design [unit].  A value in the scene is 0 if the scene lacks
+        the number, and nan if it varies along the beam.
     low, high : ndarray, shape (p,)
         Bounds of the numbers [unit].
     targets : tuple of Target, shape (m,)
@@ -145,11 +146,11 @@ class FoundDesign(SceneResult):
             beside = "" if sure or len(missed) == len(self.met) else " together with all other targets"
             yield Words(none, joined(" and ", said), beside, nearest, numbers, ".")
             if self.proof:
-                yield f"It is proven that no other comes nearer: {self.proof}."
+                yield f"It is proven that no other design comes nearer: {self.proof}."
             elif self.why_none:
-                yield Words("It is proven that there is none that meets all targets: ", self.why_none, ".")
+                yield Words("It is proven that no design meets all targets: ", self.why_none, ".")
             elif self.only_one_way:
-                said = "which suggests, but does not prove, that no other comes nearer"
+                said = "which suggests, but does not prove, that no other design comes nearer"
                 yield f"These answers {self._ways()} over all designs computed, {said}."
         if self.without_effect:
             many = len(self.without_effect) > 1

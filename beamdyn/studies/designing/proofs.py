@@ -34,7 +34,7 @@ _VERBS = {1: "raises", -1: "lowers", 0: "does not change"}
 
 
 class _RuledOut(NamedTuple):
-    """Box of designs between two corners, all with too low, or all with too high, a result."""
+    """Box of designs between two corners, in all of which the result of a target is too low, or too high."""
 
     low: np.ndarray
     high: np.ndarray
@@ -43,7 +43,11 @@ class _RuledOut(NamedTuple):
 
 
 class _Limits(NamedTuple):
-    """Logarithms of the smallest and largest factor between two designs' results; `says` names the limit."""
+    """Range of the factor by which results of a design differ from those of the design that was found.
+
+    `least` and `most` are the logarithms of its smallest and largest value; `says` names what limits it: the
+    bounds, or a target.
+    """
 
     says: str
     least: float
@@ -97,7 +101,10 @@ class Proofs:
 
     @cached_property
     def _ways(self) -> list[np.ndarray | None]:
-        """Whether each target's result rises (1), falls (-1) or stays (0) with a number; None if unknown."""
+        """How the result of each target changes with each number: it rises (1), falls (-1), or does not (0).
+
+        For each target an array (p,); None if it is not known.
+        """
         search = self.search
         corners = [with_numbers(search.scene, each) for each in Designs(search.ranges.inputs).extremes()]
         known = {what: [ways(corner, what) for corner in corners] for what in QUOTIENTS}
@@ -108,7 +115,10 @@ class Proofs:
         return bool(excess < 0) == (self.search.targets[k].at_most is None)
 
     def _helps(self, k: int, excess: float) -> np.ndarray | None:
-        """Return the sign of each number's change that brings its result nearer to target k, or None."""
+        """Return the sign (p,) of the change of each number that brings the result nearer to target k.
+
+        None if it is not known.
+        """
         ways = self._ways[k]
         return ways if ways is None or self._is_too_low(k, excess) else -ways
 
@@ -120,9 +130,9 @@ class Proofs:
         return f"{' and '.join(told)} {QUOTIENTS[what]}"
 
     def _ruled_out(self) -> Iterator[_RuledOut]:
-        """Yield boxes of designs that are no nearer to a target than a computed design, a corner of the box.
+        """Yield boxes of designs of which none is nearer to a target than the computed design in one corner.
 
-        That design misses the target by more than twice the error of its result.
+        That computed design misses the target by more than twice the error of its result.
         """
         designs = self.search.designs
         (value, error), missed = self.search.known(designs), self.search.missed(designs)
@@ -133,7 +143,10 @@ class Proofs:
                 yield _RuledOut(low, high, k, self._is_too_low(k, excess[i, k]))
 
     def _covered(self, parts: Sequence[_RuledOut], j: int) -> Iterator[str]:
-        """Yield reasons why one box of designs, or two that touch along number j, contain all designs."""
+        """Yield reasons why no design meets all targets: one box, or two touching boxes, contain all designs.
+
+        Two boxes touch at a value of number j.
+        """
         others = np.arange(len(self.x)) != j
         wide = [each for each in parts if not ((each.low > _AT) | (each.high < 1 - _AT))[others].any()]
         below = max(
@@ -161,8 +174,8 @@ class Proofs:
     # By similarity ----------------------------------------------------------------------------------
 
     def _one_factor(self) -> str:
-        """State why no common factor of the design's results meets all targets; empty if one may."""
-        # A common factor needs that only the length and common factors of the sections' properties vary.
+        """State why no factor common to the design's results meets all targets; empty if one may."""
+        # There is such a factor if only the length varies, and factors of the sections' properties.
         scene, names = self.search.scene, {*self._names}
         alone = names <= POWERS.keys() and is_bare(scene.beam) and is_clamped(scene)
         if not (alone and scene.physics == Physics() and differ_in_numbers_only(scene, names)):
@@ -176,7 +189,7 @@ class Proofs:
         return Words(f"{said}the least factor by ", least.says, apart, most.says)
 
     def _in_the_bounds(self) -> _Limits:
-        """Return the range of the factor between results of designs within the bounds and those of `x`."""
+        """Return the range of the factor from the results of `x` to those of any design in the bounds."""
         ranges = self.search.ranges
         corners = [*Designs(ranges.inputs).extremes()]
         columns = {name: np.array([each[name] for each in corners]) for name in self._names}
@@ -185,7 +198,7 @@ class Proofs:
         return _Limits("the bounds", float(factors.min()) - _EXACT, float(factors.max()) + _EXACT)
 
     def _by_targets(self) -> Iterator[_Limits]:
-        """Yield the range of factors for which the results meet each target, within their errors."""
+        """Yield the range of factors with which the results meet each target, within the results' errors."""
         value, error = (each[0] for each in self.search.known(self.x[None]))
         for target, own, of_own in zip(self.search.targets, value.tolist(), error.tolist(), strict=True):
             # Frequencies at rest of similar designs differ only by the factor.  Critical speeds do so only if
@@ -199,14 +212,15 @@ class Proofs:
 
 
 def _is_quotient(target: Target) -> bool:
-    """Return whether a target is a value or a limit of a result that is a quotient."""
+    """Return whether a target is a value or a limit of a result that is an extremum or mean of quotients."""
     return target.what in QUOTIENTS and not target.speed and target.best is None
 
 
 def _common(known: Sequence[dict[str, int]], names: Sequence[str]) -> np.ndarray | None:
-    """Return the signs of changes by numbers in several scenes; None if they differ or are not known.
+    """Return the sign with which each number changes a result, common to several scenes.
 
-    A number without effect in some scenes has the sign of the others.
+    `known` has the signs of each scene by name.  A number without effect in some scenes has the sign of the
+    other scenes.  None is returned if signs are opposite, or if one is not known.
     """
     if not all(name in each for each in known for name in names):
         return None

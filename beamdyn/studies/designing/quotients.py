@@ -51,7 +51,7 @@ def ways(scene: Scene, what: str) -> dict[str, int]:
     """Find which numbers increase (1), decrease (-1) or do not change (0) the quotient for all deflections.
 
     This holds for any values of the other numbers, as long as the scene meets the conditions checked here.
-    They are linear in each number: if they hold at all corners of the bounds, they hold within.
+    The conditions are linear in each number, so that they hold within bounds if they hold at all corners.
 
     Parameters
     ----------
@@ -85,8 +85,8 @@ def is_clamped(scene: Scene) -> bool:
 def _sides(beam: Beam) -> dict[str, int]:
     """Find how section thickness h and width b change the quotient, if sections have all elastic energy.
 
-    The energy is proportional to h^3 b.  In the divisor, the part of sections is proportional to h b, and the
-    part of bodies, which must not be negative, does not change.
+    The energy is proportional to h^3 b.  In the divisor of the quotient, the contribution of the sections is
+    proportional to h b; the contribution of bodies, which must not be negative, does not change.
     """
     return _THICKNESS | dict.fromkeys(_WIDTH, 0 if is_bare(beam) else 1)
 
@@ -94,8 +94,9 @@ def _sides(beam: Beam) -> dict[str, int]:
 def _at_rest(scene: Scene) -> dict[str, int]:
     """Find which numbers increase, decrease or do not change V/T, as in the module, for a frequency at rest.
 
-    With a clamped root and no springs, for a given w(x/L), V is proportional to 1/L^3.  The part of sections
-    in T is proportional to L, and that of a body without offset decreases at most as L^-2, by its rotation.
+    With a clamped root and no springs, for a given w(x/L), V is proportional to 1/L^3.  The contribution of
+    the sections to T is proportional to L; that of a body without offset decreases at most as L^-2, by its
+    rotation.
     """
     beam, tip = scene.beam, scene.beam.tip or TipMass(0.0)
     found = _STIFFNESS | _MASS | _TIP_MASS | _TIP_INERTIA | _NO_EFFECT
@@ -109,10 +110,10 @@ def _at_rest(scene: Scene) -> dict[str, int]:
 def _of_buckling(scene: Scene) -> dict[str, int]:
     """Find which numbers increase, decrease or do not change V/G, as in the module, for buckling.
 
-    G increases with R.  If R is at least the distance of all masses from the root, no part of G is negative,
-    and G increases with each mass.  If only sections have mass, G is proportional to it for any R. With a
-    clamped root and no springs, the parts of sections and a tip mass in G/V are, with integrals a, b, c that
-    depend on w(x/L),
+    G increases with R.  If R is at least the distance of all masses from the root, no contribution to G is
+    negative, and G increases with each mass.  If only sections have mass, G is proportional to it for any R.
+    With a clamped root and no springs, the contributions of the sections and of a tip mass to G/V are, with
+    integrals a, b, c that depend on w(x/L),
 
         L^3 R a - L^4 b + d^2 L^4 c  with b <= a,    L^2 R a - L^3 a + d^2 L^3 c,
 

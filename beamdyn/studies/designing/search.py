@@ -52,7 +52,9 @@ class Spent(Exception):
 
 @dataclass(frozen=True)
 class Ranges:
-    """Numbers of a scene as fractions 0 to 1 between bounds; of logarithms if both bounds are positive.
+    """Numbers of a scene as fractions, 0 to 1, of the ranges between their bounds.
+
+    The fractions are of logarithms if both bounds are positive.
 
     Parameters
     ----------
@@ -200,15 +202,15 @@ class Search:
         return np.where(missed <= _EXACT, 0.0, missed)
 
     def met(self, shares: np.ndarray) -> np.ndarray:
-        """Return whether each design (row) meets each target (column) within the errors of the results."""
+        """Return whether each design (row) meets each target (column), within the errors of the results."""
         error = self.known(shares)[1]
         return self.missed(shares) <= np.where(np.isfinite(error), error, 0.0)
 
     def aim(self, shares: np.ndarray) -> np.ndarray:
-        """Compute the objective to be minimized.
+        """Compute the objective of the search, which is minimized, for each design (row).
 
-        It is the logarithm of a result to be minimized, or minus that of a result to be maximized; without
-        such a target, the squared change of the numbers.
+        It is the logarithm of the result that is to be smallest, or minus the logarithm of the result that is
+        to be largest; without such a target, the sum of squared changes of the numbers from the given scene.
         """
         for k, each in enumerate(self.targets):
             if each.best is not None:
@@ -233,7 +235,7 @@ class Search:
         with suppress(Spent):
             replace(self, spare=len(self.own) + _CORRECTIONS)._explore(
                 seed
-            )  # the copy stores its designs in the table of this search
+            )  # the copy shares the table of computed designs with this search
         with suppress(Spent):
             self._correct(self.ranked(self.designs)[0])
         return self.ranked(self.designs)[0]
@@ -297,7 +299,7 @@ class Search:
     def _descend(self, starts: np.ndarray) -> None:
         """Minimize the objective, subject to the targets, from several designs.
 
-        As long as no design meets the targets, their miss is minimized, too.
+        As long as no design meets the targets, the sum of squared misses is minimized as well.
         """
         for start in starts:
             if self._is_found:
@@ -358,7 +360,7 @@ class Search:
 
 
 def _step_within(slopes: np.ndarray, excess: np.ndarray, x: np.ndarray) -> np.ndarray:
-    """Compute the shortest step that cancels an excess; numbers that reach their bounds stay there."""
+    """Compute the shortest step from a design x that cancels an excess to first order, within the bounds."""
     step, free = np.zeros(len(x)), np.ones(len(x), dtype=bool)
     while free.any():
         step[free] = np.linalg.lstsq(slopes[:, free], -excess - slopes[:, ~free] @ step[~free], rcond=None)[0]

@@ -124,11 +124,11 @@ class Target:
         return next((k for k, label in enumerate(labels) if label in (wanted, f"{wanted} (forced)")), None)
 
     def excess(self, value: np.ndarray) -> np.ndarray:
-        """Compute the logarithm of the ratio of results to the required value, or the margin to a limit.
+        """Compute the logarithm of the ratio of results to the required value or limit.
 
-        It is 0 if a value or limit is met exactly, and positive if a limit is kept; for a result to be
-        minimized or maximized, it is larger for a better result.  As results of beams are nearly powers of
-        the numbers, these logarithms are nearly linear in the logarithms of the numbers.
+        For an upper limit its sign is reversed, so that it is positive if a limit is kept.  For a result that
+        is to be the largest or smallest, it is larger the better the result is.  As results of beams are
+        nearly powers of the numbers, these logarithms are nearly linear in the logarithms of the numbers.
         """
         wanted = self.equals or self.at_least or self.at_most or 1.0
         sign = -1.0 if self.at_most is not None or self.best == "smallest" else 1.0
@@ -138,9 +138,9 @@ class Target:
         return found if self.best is not None else _compressed(found)
 
     def missed(self, excess: np.ndarray) -> np.ndarray:
-        """Compute the distance from the target as a logarithm; 0 if the target is met.
+        """Compute the distance from the target from the logarithms of `excess`; 0 if the target is met.
 
-        It is also 0 for a result to be minimized or maximized.
+        For a result that is to be the largest or smallest it is 0, or 5 if there is no result.
         """
         if self.best is not None:
             return np.where(excess <= -_NONE, _FAR, 0.0)

@@ -9,11 +9,12 @@ is
 with the advance alpha of the slower phase in T, and the largest exponent lies between two bounds:
 
 - it is at most the mean over theta of log |B_m| / (m T), for every m (logarithms of norms are subadditive);
-- let p_k be the product of the first k singular values, and mu the least ratio of the k-th and the next.
-  Where log p_k of B_2m is that of its two factors within log(mu)/2 at every theta, the mean of
-  log p_k(B_2m) - log p_k(B_m), over m T, is the sum of the k largest exponents, with an error of the order of
-  1/mu (the avalanche principle); a k-th of it is no more than the largest.  With all singular values it is
-  the mean of log |det A|, without error.
+- let p_k be the product of the first k singular values of a matrix, and mu the least ratio, over theta, of
+  the k-th singular value of B_m to the next.  If log p_k of B_2m equals the sum of log p_k of its two factors
+  within log(mu)/2 at every theta, the mean of log p_k(B_2m) - log p_k(B_m) over theta, divided by m T, is the
+  sum of the k largest exponents, with an error of the order of 1/mu (the avalanche principle).  This sum
+  divided by k is at most the largest exponent.  If k is the number of all singular values, the sum is the
+  mean of log |det A| / T, without error.
 
 Without damping a stable motion has the exponent 0.  No bound separates it from a small exponent: the status
 is "undecided", with a bound on the growth rate.
@@ -189,7 +190,7 @@ def _products(B: np.ndarray) -> np.ndarray:
 
 
 def _values(p: np.ndarray) -> np.ndarray:
-    """Convert logarithms of the products of the first singular values to those of the singular values."""
+    """Convert logarithms of products of the first singular values to logarithms of each singular value."""
     return np.diff(p, axis=1, prepend=0.0)
 
 
@@ -233,9 +234,10 @@ def _fine_enough(B: np.ndarray) -> np.ndarray | None:
 
 
 def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
-    """Return a number of periods whose ends sample the slower phase all around, and harmonics at the ends.
+    """Return a number of periods whose ends sample the slower phase all around the circle.
 
-    The harmonics -most to most are in columns; the slower phase advances by `alpha` [rad] in each period.
+    Return also the harmonics -most to most (columns) of the slower phase at the ends of these periods; the
+    slower phase advances by `alpha` [rad] in each period.
     """
     count = min(3 * (2 * most + 1), _PERIODS)
     while True:

@@ -49,7 +49,8 @@ class Period(NamedTuple):
 def rates_of(scene: Scene) -> tuple[float, ...]:
     """Return the angular frequencies [rad/s] of the phases that the coefficients of the equations depend on.
 
-    The angle of rotation is one of them if gravity, or an acceleration of the carrier, has a fixed direction.
+    The angle of rotation is such a phase if gravity, or an acceleration of the carrier, has a fixed
+    direction.
 
     Raises
     ------
@@ -66,7 +67,7 @@ def rates_of(scene: Scene) -> tuple[float, ...]:
     rates = tuple(rate for rate in rates if rate)
     if not rates:
         bound = "the carrier stands still, and nothing pulsates"
-        raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or let it rotate or pulsate")
+        raise InvalidValue("scene.motion", motion, bound, "use natural_modes, or give another motion")
     return rates
 
 
@@ -91,7 +92,7 @@ def period_of(scene: Scene) -> Period:
 
 
 def _is_fraction(ratio: float) -> bool:
-    """Return whether a ratio is within rounding a fraction with a denominator <= 64 and numerator <= 4096."""
+    """Return whether a ratio is a fraction with numerator <= 4096 and denominator <= 64, within rounding."""
     found = Fraction(ratio).limit_denominator(MOST_TURNS)
     return abs(found - Fraction(ratio)) <= _COMMENSURATE * ratio and found.numerator <= _MOST_OTHERS
 
@@ -120,7 +121,7 @@ _FEWEST = 12  # smallest number of steps in a period of the motion, which resolv
 COARSER_STEPS = 2 / 3  # ratio of the number of steps of the second solution to that of the first
 # Assumed ratio of the errors of the two solutions; the ratio tends to (3/2)^16 = 650 for small steps.
 _EXCESS = 100.0
-# Ratio of a mode's frequency at rest to that of the period, below which the mode is scaled by the latter.
+# Ratio of a mode's angular frequency at rest to 2 pi/period, below which it counts as 0 in scaling states.
 _SLOWEST = 1e-3
 _SAMPLES = 64  # number of times in a period at which the stiffness is evaluated to find its maximum
 _ROUNDING = 4 * np.finfo(float).eps  # rounding error of a step, relative to the size of its matrix
@@ -184,9 +185,10 @@ def monodromy(scene: Scene, period: Period, equations: Equations) -> Monodromy:
 
 
 def _scale(equations: Equations, period: float) -> np.ndarray:
-    """Return factors of the state (q, q'): of q the frequency at rest, or 2 pi/period where it is 0; of q' 1.
+    """Return the factors, shape (2 n,), by which the entries of states (q, q') are multiplied.
 
-    Rounding gives the free turn of a hinged beam a tiny frequency, which counts as 0.
+    The factor of a coordinate is its angular frequency at rest, or 2 pi/period where this is 0; that of a
+    velocity is 1.  Rounding gives the free turn of a hinged beam a tiny frequency, which counts as 0.
     """
     frequency, turning = np.sqrt(np.abs(np.diagonal(equations.matrices[0]["unity"]))), 2 * math.pi / period
     frequency = np.where(frequency > _SLOWEST * turning, frequency, turning)

@@ -117,7 +117,10 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
         return 2 * abs(self.again(self.scene, modes=finer.modes).growth_rate - self.growth_rate)
 
     def judged(self, found: FloquetMultipliers) -> np.ndarray:
-        """Return the magnitude of the largest multiplier, for which the model error is stated: shape ()."""
+        """Return the magnitude of the largest multiplier of `found`, shape ().
+
+        It is the value whose model error is stated.
+        """
         return np.array(found.spectral_radius)
 
     def plot(self, ax: Axes | None = None) -> Axes:

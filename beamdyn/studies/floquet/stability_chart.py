@@ -121,7 +121,10 @@ class StabilityChart(SceneResult, JudgedByRepeating):
         return [evenly_spread(len(each.values), _JUDGED) for each in self.inputs]
 
     def judged(self, found: StabilityChart) -> np.ndarray:
-        """Return the largest multipliers' magnitudes for which the model error is computed: at most (9,)."""
+        """Return the magnitude of the largest multiplier in `found` at the points with a model error: (9,).
+
+        There are fewer points if a number of the chart has fewer than three values.
+        """
         own = found.status.shape == self.status.shape
         return (found.spectral_radius[np.ix_(*self._few)] if own else found.spectral_radius).ravel()
 
@@ -238,7 +241,8 @@ def integrate(points: Points) -> list[Monodromy]:
 def judge(points: Points) -> list[dict[str, np.ndarray]]:
     """Return the stability of each scene of a task: arrays (1,) by name, see `_verdicts`.
 
-    It is that by Floquet multipliers, or by the largest Lyapunov exponent if the motion has no period.
+    The stability follows from the Floquet multipliers, or from the largest Lyapunov exponent if the motion
+    has no period.
     """
     return [_verdict(points.scenes, numbers) for numbers in points.numbers]
 

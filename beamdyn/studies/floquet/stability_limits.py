@@ -30,7 +30,7 @@ from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, m
 from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
 
-_REAL = 1e-3  # imaginary part of a multiplier below which it is real: two multipliers meet at 1 or -1
+_REAL = 1e-3  # a multiplier with a smaller imaginary part counts as real, where two meet at 1 or -1
 
 
 @dataclass(frozen=True)
@@ -175,12 +175,13 @@ def _warnings(error: np.ndarray) -> Iterator[Statement]:
 # Largest, first and smallest step along a curve, as fractions of the ranges.
 _STEP, _FIRST, _LEAST = 1 / 20, 1 / 160, 1e-6
 _WIDER = 2.0  # largest ratio of a step along a curve to the previous step
-# Smallest cosine of the angle between successive steps, and at the first step.
+# Smallest cosine of the angle between a step and the previous one, and the same for the first step.
 _TURNS, _FIRST_TURNS = 0.9, 0.2
 # Factor by which the half width of a bracket about the limit is reduced, and the smallest half width.
 _NARROWER, _NARROWEST = 0.25, 1e-7
 _FINE = 1e-11  # accuracy of a root, as a fraction of the ranges of the two numbers
-# Distances, as fractions of the ranges, at which the stability on both sides of a point is computed.
+# Distances, as fractions of the ranges, that are tried in turn until the motion at this distance from a point
+# of the limit is certainly stable on one side and unstable on the other.
 _ERRORS = (1e-10, 1e-9, 1e-8, 1e-7, 1e-6, 1e-5)
 _MOST = 400  # largest number of points of a curve in each direction
 # Distance from the border of the chart, over the length of a segment, below which the segment ends on the
@@ -192,8 +193,8 @@ _SLACK = 0.5  # fraction of a cell by which a polygonal curve may miss an edge t
 class LimitPoint(NamedTuple):
     """Point of a stability limit in the chart.
 
-    Position (2,) as fractions of the ranges of the two varied numbers, its error likewise, and the Floquet
-    multiplier that leaves the unit circle there.
+    Its position `place`, (2,), and the error of the position are fractions of the ranges of the two varied
+    numbers; `multiplier` is the Floquet multiplier that leaves the unit circle there.
     """
 
     place: np.ndarray
@@ -251,7 +252,7 @@ class LimitTracer:
         return self._known[place.tobytes()]
 
     def _beyond(self, place: np.ndarray) -> float:
-        """Compute the function whose roots are limits, at a position (2,): positive for unstable motion."""
+        """Compute a function that is 0 on the limits and positive for unstable motion, at a position (2,)."""
         found = self._multipliers(place)
         largest = float(found.size[0, 0])
         if found.sign is None:
@@ -261,7 +262,11 @@ class LimitTracer:
         return -float(_nearest(found)[0] ** 2 / 4)
 
     def _point(self, place: np.ndarray, normal: np.ndarray) -> LimitPoint:
-        """Make the point of the limit at a root; at the distance `error` from it stability is certain."""
+        """Build the point of the limit at a root of the function, with its error.
+
+        At a distance of the error along the normal, the motion is certainly stable on one side of the root,
+        and unstable on the other.
+        """
         error = next((e for e in _ERRORS if self._verdicts(place, e * normal) == (STABLE, UNSTABLE)), np.inf)
         found = self._multipliers(place)
         leaves = found.value[0, 0] if found.sign is None else _nearest(found)[1]

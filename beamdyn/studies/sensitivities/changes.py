@@ -46,7 +46,7 @@ class Nearby(Generic[Evaluated]):
     Parameters
     ----------
     values : list
-        Matrices for `PLACES` values of the number.
+        Matrices for eight (`PLACES`) values of the number.
     weights : ndarray, shape (PLACES,)
         Weights of the matrices in the derivative [1 / unit of the number].
     last : ndarray, shape (PLACES,)
@@ -66,8 +66,8 @@ def evaluate_nearby(
 ) -> Iterator[Nearby[Evaluated]]:
     """Evaluate matrices near a number, in the widest interval of valid values, then in narrower ones.
 
-    Values are refused if `evaluate` raises an `InvalidValue`; if those on one side always are, only the other
-    side is used.
+    Values are refused if `evaluate` raises an `InvalidValue`; if all values on one side of the number are
+    refused, only values on the other side are used.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ class PencilChange:
         return complex(s**2 * (left @ (self.M @ right)) + s * of_rate + of_stiffness)
 
     def stiffness(self, speed: float) -> np.ndarray:
-        """Compute the derivative of the stiffness at a speed [rad/s]."""
+        """Compute the derivative of the stiffness at a speed [rad/s] with respect to the number."""
         return self.K0 + speed**2 * self.K2
 
 
@@ -182,7 +182,7 @@ class PerturbedModes:
     def of(
         cls, pencil: SteadyPencil, speed: float, eigenvalue: np.ndarray, right: np.ndarray
     ) -> PerturbedModes:
-        """Make the perturbed modes from eigenvalues and right eigenvectors; compute the left eigenvectors."""
+        """Build the modes from eigenvalues and right eigenvectors; the left eigenvectors are computed."""
         left = [_left(pencil, speed, s, v) for s, v in zip(eigenvalue, right.T, strict=True)]
         return cls(pencil, speed, eigenvalue, right, np.array(left).T)
 
@@ -257,7 +257,10 @@ def critical_vector(pencil: SteadyPencil, speed: float) -> np.ndarray:
 
 
 def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, change: PencilChange) -> float:
-    """Compute the derivative of the critical speed from derivatives of the matrices."""
+    """Compute the derivative of the critical speed, at which the beam buckles in the shape v.
+
+    `change` has the derivatives of the matrices.
+    """
     return float(-(v @ change.stiffness(speed) @ v) / (2 * speed * (v @ pencil.K2 @ v)))
 
 
@@ -267,10 +270,11 @@ def critical_derivative(pencil: SteadyPencil, speed: float, v: np.ndarray, chang
 EPSILON = 32 * np.finfo(float).eps  # rounding error of an integral, relative to its largest contribution
 # Ratio of a polynomial's last term to the matrices below which the interval is resolved.
 _RESOLVED = 1e-13
-# Ratio of the last term to the matrices below which it may be a rounding error; those of modal damping are as
-# large.
+# Ratio of a polynomial's last term to the matrices below which the term may be a rounding error: the rounding
+# errors of modal damping reach this size.
 _ROUNDED = 1e-10
-# Ratio of the last term of a narrower interval to that of a wider one, above which it is a rounding error.
+# Ratio of the last term in a narrower interval to that in the next wider one, above which it is taken for a
+# rounding error: narrowing the interval no longer reduces it.
 _CONVERGES = 0.1
 _Pencils: TypeAlias = tuple[SteadyPencil, SteadyPencil]
 
@@ -341,7 +345,7 @@ def _resolved(number: SceneNumber, evaluate: Callable[[float], _Pencils]) -> Nea
 
 
 def _last(nearby: Nearby[_Pencils]) -> PencilChange:
-    """Compute the last terms of the polynomials of the matrices: small if the polynomials resolve them."""
+    """Compute the last terms of the matrices' polynomials: they are small if these resolve the matrices."""
     return PencilChange.of([fine for fine, _ in nearby.values], nearby.last)
 
 
@@ -357,7 +361,7 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
         raise InvalidValue(name, value, bound, "place the point at a small distance from there")
     equations = equations_near(model, scene)
     if equations.size != model.equations.size:
-        bound = "the number of functions differs between nearby designs"
+        bound = "the number of basis functions differs between nearby values of the number"
         raise InvalidValue(name, value, bound, "give a Ritz or a Fem of another size")
     fine, coarse = equations.steady(), model.equations.coarse
     if coarse is None:
@@ -366,11 +370,11 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
 
 
 def equations_near(model: Model, scene: Scene) -> Equations:
-    """Build the equations of a scene that differs little, in a model's functions if segments agree.
+    """Build the equations of a scene that differs little from a model's scene, in nearly the same functions.
 
-    Matrices of nearby scenes then change smoothly.  New functions of bending moments, which depend on all
-    properties of the beam, may differ abruptly after the smallest change of these; other functions follow
-    the breakpoints.
+    Matrices of nearby scenes then change smoothly.  The model's functions are used if the segments of both
+    beams agree.  Otherwise functions of bending moments are adapted to the new segments, as new ones could
+    differ abruptly after the smallest change of the beam; other functions are built for the new breakpoints.
     """
     nearby, own, other = Model(scene, model.discretization), model.scene.modelled_beam, scene.modelled_beam
     if scene.beam.matrices is not None:

@@ -221,8 +221,8 @@ def crossing_sensitivities(
 
     References
     ----------
-    Lancaster (1966), Lambda-Matrices and Vibrating Systems, along the line of the excitation
-    (own).
+    Lancaster (1966), Lambda-Matrices and Vibrating Systems; for the speed at which a frequency stays on an
+    excitation line: own derivation.
 
     Examples
     --------
@@ -266,7 +266,7 @@ def _since(start: float, model: Model) -> Provenance:
 def _linear(model: Model) -> Model:
     """Return the model; raise an error for large deflection."""
     if model.scene.physics.large_deflection:
-        bound = "sensitivities are those of the linear equations"
+        bound = "sensitivities are computed for linear equations only"
         remedy = Words("leave it out, or use ", Named("bd.study", "beamdyn study"))
         raise InvalidValue("physics.large_deflection", True, bound, remedy)
     return model
@@ -326,7 +326,7 @@ def _without_derivative(found: Modes) -> tuple[np.ndarray, list[str]]:
     silent = ~np.isfinite(found.frequency) | (s == 0)
     if silent.any():
         numbers = ", ".join(str(k + 1) for k in np.flatnonzero(silent))
-        words.append(f"without vibration (mode {numbers}) there is no derivative of the frequency")
+        words.append(f"mode {numbers}: without vibration there is no frequency, and no derivative")
     return crossing | silent, words
 
 

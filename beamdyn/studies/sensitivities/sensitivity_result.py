@@ -29,7 +29,8 @@ from beamdyn.scene.scene import Scene, SceneResult
 
 _TOUCHING = 1e-6  # distance between two points, over the length, below which they touch
 _STEP = 0.01  # step of a number, as a fraction of its value or of the typical size of its kind
-# Ratio of the number of modes of another scene to that of the result, so that each mode has a counterpart.
+# Ratio of the number of modes to that of the result, when the analysis is repeated for another scene: so each
+# mode of the result has a counterpart.
 _FURTHER = 2
 _SAME = 0.2  # relative distance below which results of two scenes may belong to the same mode
 # Smallest similarity of a name that is proposed for a mistyped one: many names have the same beginning.
@@ -144,7 +145,11 @@ def _has_constant_section(scene: Scene) -> bool:
 
 
 def _matters(scene: Scene, path: str, value: float) -> bool:
-    """Return whether frequencies depend on a number; not if it is infinite, a load, or not modelled."""
+    """Return whether natural frequencies depend on the number of a scene at a path.
+
+    They do not if the number is infinite, belongs to the motion, to gravity or to a load, or to an effect
+    that the scene does not model; factors of properties ("beam.scale.") are not counted either.
+    """
     table, _, key = path.partition(".")
     if (
         table in ("motion", "tip_load", SPEED)
@@ -172,8 +177,8 @@ def _number(scene: Scene, path: str, value: float) -> SceneNumber:
     """Describe the input at a path, with the step for its derivative.
 
     The step is 1 % of the value or, if larger, of a typical magnitude, such as the beam's length; 0.01 for
-    angles [rad] and Poisson's ratio; for positions of point masses and springs, the result of
-    `_room_of`.
+    angles [rad] and Poisson's ratio; for positions of point masses and springs, the distance that
+    `_room_of` returns.
     """
     unit, beam, step = unit_of(path) or "", scene.beam, _STEP * abs(value)
     if unit == "rad" or path == "beam.poissons_ratio":
@@ -279,9 +284,10 @@ class Sensitivities(SceneResult, JudgedByRepeating):
         return tuple(self.inputs[row].name for row in size.argmax(axis=0).tolist())
 
     def judged(self, found: Sensitivities) -> np.ndarray:
-        """Return the derivative of each result by its most important number, for the model error: shape (k,).
+        """Return the derivatives, shape (k,), whose model error is stated, from the result `found`.
 
-        The derivatives are those of `found`, the analysis of another scene; nan where it lacks the result.
+        Each is the derivative of a result with respect to its most important number.  `found` is the analysis
+        of another scene; the derivative is nan where it lacks the result.
         """
         rows = {each.name: i for i, each in enumerate(found.inputs)}
         most = zip(self._same_answers(found).tolist(), self.most_important, strict=True)

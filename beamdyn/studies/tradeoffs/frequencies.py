@@ -35,7 +35,8 @@ _EIGENFUNCTIONS = (1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _ELEMENTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 28, 40, 56, 80)
 _TOLERANCES = tuple(10.0**-k for k in range(1, 13))
 _REFERENCES = (40, 80, 160)  # numbers of functions of the reference, on all segments together, tried in turn
-# Numbers of functions with further functions across the width, for which the error never reaches `_RESOLVED`.
+# Number of functions of the reference along the beam if there also are functions across the width: only one
+# is tried, as the error then never reaches `_RESOLVED`.
 _REFERENCE_ACROSS = (60,)
 _RESOLVED = 1e-10  # relative error below which a reference is accurate enough
 
@@ -44,9 +45,9 @@ _RESOLVED = 1e-10  # relative error below which a reference is accurate enough
 def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: float = 10.0) -> Diagram:
     """Measure error against computing time of the natural frequencies at one or several speeds.
 
-    The time of a basis is that for matrices and eigenvalues; extrapolated finite elements are solved twice,
-    the second time with half the elements; for ``tolerance=`` it is the time of the whole call, which also
-    chooses the basis and estimates the error.
+    The time of a basis is the time for matrices and eigenvalues; extrapolated finite elements are solved
+    twice, the second time with half the elements; for ``tolerance=`` it is the time of the whole call, which
+    also chooses the basis and estimates the error.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
     )
     reference = f"{exact.model.discretization}; {_compare_with_bounds(exact, float(speeds[-1]), modes)}"
     title = f"{number_of(modes, 'frequency', 'frequencies')} {at}"
-    error_of = "the worst frequency, relative"
+    error_of = "the frequency with the largest relative error"
     return Diagram.make(title, error_of, reference, resolved, measurements, skipped)
 
 
@@ -125,12 +126,12 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
     if below.any() or above.any():
         raise ArithmeticError(f"the reference at {speed:g} rad/s is not within the guaranteed bounds")
     if np.isnan(bounds.width).any():
-        return f"within the guaranteed bounds at {speed:.6g} rad/s as far as there are any"
-    return f"within the guaranteed bounds at {speed:.6g} rad/s, {bounds.width.max():.0e} apart"
+        return f"within the guaranteed bounds at {speed:.6g} rad/s, as far as there are bounds"
+    return f"within the guaranteed bounds at {speed:.6g} rad/s, which are {bounds.width.max():.0e} apart"
 
 
 def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
-    """Yield all families to measure: Ritz bases, finite elements, and the choice by a tolerance."""
+    """Yield all families to measure: Ritz bases, finite elements, and the basis chosen for a tolerance."""
     segments, bases = _segments(scene), {"legendre": _LEGENDRE, "eigenfunctions": _EIGENFUNCTIONS}
     for basis, sizes in bases.items():
         yield Family(f"Ritz, {basis}", _basis_settings(scene, speeds, modes, basis, sizes, segments))
@@ -150,7 +151,7 @@ def _segments(scene: Scene) -> int:
 def _basis_settings(
     scene: Scene, speeds: np.ndarray, modes: int, basis: Any, sizes: Sequence[int], segments: int
 ) -> tuple[TimedCase, ...]:
-    """Make cases that solve in Ritz bases of several sizes (with Legendre functions, per segment)."""
+    """Make a case for each size of a Ritz basis; for Legendre functions it is the number per segment."""
     per_segment = segments if basis == "legendre" else 1
     each = "functions a segment" if per_segment > 1 else "functions"
     least, most = -(-modes // per_segment), _MOST_ACROSS if scene.models_width else inf
@@ -261,7 +262,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
     given = _solve_choice(AS_GIVEN, scene, speed, modes)
     choices, skipped = _list_choices(scene, speed, modes, given)
     title = f"physics: {number_of(modes, 'frequency', 'frequencies')} at {speed:.6g} rad/s"
-    what = "the worst frequency, relative, including the model error"
+    what = "the frequency with the largest relative error, including the model error"
     if not choices:
         return Diagram.make(title, what, "", 0.0, (), skipped or ("no effect that can be added changes it",))
     full = choices[-1]
@@ -281,8 +282,8 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
     measurements, left_out = measure_families(families, error, resolved, budget)
     of_model = float(np.abs(given.frequency[:modes] / true - 1).max())
     if min((m.error for m in measurements), default=inf) > _BETTER * of_model:
-        said = f"{_names(choices)}: the budget does not last for enough functions; {AS_GIVEN} the model is "
-        left_out = [f"{said}{percent(of_model)} off, with any setting", *left_out]
+        said = f"{_names(choices)}: the budget does not suffice for enough functions; physics {AS_GIVEN} has "
+        left_out = [f"{said}an error of {percent(of_model)} with any number of functions", *left_out]
     reference = f"{full.solution.model.discretization} with {_names(choices)}"
     return Diagram.make(title, what, reference, resolved, measurements, [*skipped, *left_out])
 

@@ -68,7 +68,7 @@ class Digit:
     time : float
         Time of this measurement [s].
     ratio : float
-        Ratio of the time to that of one digit less; nan for the first digit.
+        Ratio of this time to the time for one digit less; nan for the first digit.
     ties : tuple of str
         Other settings within this error whose times differ by at most twice the scatter.
     """
@@ -166,7 +166,7 @@ class Diagram(Result):
         See `Result.headline`.
         """
         yield self.title
-        yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in front"
+        yield f"{counted(len(self.measurements), 'measurement')}, {len(self.front)} in the Pareto front"
         yield f"reference to {number(self.resolved)}"
 
     @classmethod
@@ -208,9 +208,10 @@ class Diagram(Result):
 
 RUNS = 7  # number of runs of a setting; the shortest counts, as other processes can only add time
 _REPEATS = 0.4  # fraction of a setting's part of the budget that is used for repetitions
-# Fraction of the budget for alternating runs; ratio to the shortest time, below which settings run again.
+# Fraction of the budget for repeating settings in alternation, and the largest ratio of a setting's time to
+# the shortest time for which the setting takes part in these repetitions.
 _AGAIN, _NEAR = 0.2, 1.3
-# Number of scatters within which times are equal; assumed relative scatter of a single run.
+# Multiple of the scatter within which two times count as equal; relative scatter assumed for a single run.
 _TIE, _SCATTER_OF_ONE = 2.0, 0.1
 
 
@@ -345,8 +346,9 @@ def _measure_family(
 
 
 def _time_runs(setting: TimedCase, rest: float, spare: float) -> tuple[Any, list[float]]:
-    """Run a setting several times; return its result and the processor times [s].
+    """Run a setting up to seven times; return its result and the processor times of the runs [s].
 
+    Further runs start until the time `spare` [s] is used up; all runs are to end within the time `rest` [s].
     Other processes hardly affect the processor time; all runs use one thread.
     """
     start = perf_counter()

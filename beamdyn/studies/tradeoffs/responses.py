@@ -40,7 +40,7 @@ _MODES = tuple(range(1, 11))
 _MODES_AT_ENDS = (1, 2, 3, 4, 6)
 _ALL_MODES = 8  # number of modes of the reference at the slowest speed, and at the fastest
 _MODES_TOLERANCE = 1e-7
-_ERROR_OF = f"the tip deflection, largest at {_INSTANTS} times, over the largest deflection"
+_ERROR_OF = f"the tip deflection: the largest at {_INSTANTS} times, relative to the largest deflection"
 _TIGHT = f"{OURS} with a tolerance of {_TIGHTEST:g}"
 _STILL = "nothing moves the beam"
 
@@ -152,7 +152,7 @@ def _check_by_dop853(scene: Scene, exact: Transient, modes: int, basis: Discreti
     t = np.linspace(0, end, 1001)
     difference = np.abs(other.deflection(t) - exact.deflection(t)).max()
     differs = _relative(float(difference), other.largest)
-    return f"DOP853 with rtol {_CHECK_RTOL:g} differs by {differs:.1e} to {end:.3g} s"
+    return f"DOP853 with rtol {_CHECK_RTOL:g} differs by {differs:.1e} up to {end:.3g} s"
 
 
 def _integrators(scene: Scene, t_end: float, modes: int, basis: Discretization) -> Iterator[Family]:
@@ -195,7 +195,7 @@ _ALL_HARMONICS = 6  # number of harmonics of the reference
 _STEADY_MODES = tuple(range(1, 9))
 _ALL_STEADY_MODES = 12  # number of modes of the reference
 _PHASES = 24  # number of values of each phase angle at which tip deflections are compared
-_ERROR_OF_STEADY = "the tip deflection, largest over phases and speeds, over the sum of the lines"
+_ERROR_OF_STEADY = "the tip deflection: the largest over phases and speeds, relative to the sum of the lines"
 _EPS = float(np.finfo(float).eps)
 
 

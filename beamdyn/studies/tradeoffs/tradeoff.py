@@ -26,12 +26,12 @@ from beamdyn.studies.tradeoffs import responses
 from beamdyn.studies.tradeoffs.frequencies import frequency_diagram, physics_diagram
 from beamdyn.studies.tradeoffs.measurements import Diagram
 
-# Largest number of modes that the references resolve, even with as many modes of a second plane.
+# Largest number of modes that the references resolve, even if a second plane of bending adds as many modes.
 MOST_MODES = 20
 LEAST_BUDGET, LARGEST_BUDGET = 0.01, 86400.0  # limits of the time budget [s]
-_REMEDY = "compare fewer modes: the times show how the time grows with their number"
-_DEFAULT_PERIODS = 100  # default length of a transient after its start, in periods of the first mode
-_LONGEST_START = 900  # longest start, in periods of the first mode, that a default transient includes
+_REMEDY = "give fewer modes: comparing their times shows how the time grows with the number of modes"
+_DEFAULT_PERIODS = 100  # default length of a transient after the start-up, in periods of the first mode
+_LONGEST_START = 900  # longest start-up, in periods of the first mode, that a default transient includes
 _LOCUS, _STEADY = 101, 50  # number of speeds of the locus, and of the steady response
 _SHARES = {
     "frequencies": 0.05,
@@ -138,7 +138,7 @@ def tradeoff(
     unresolved, scene = scene, plain_physics(scene)
     modes, budget = count("modes", modes, 1, MOST_MODES, _REMEDY), _check_budget(budget)
     if progress is not None:
-        function("progress", progress, "it takes the numbers of finished diagrams and of all")
+        function("progress", progress, "it takes the numbers of finished diagrams and of all diagrams")
     if t_end is not None and scene.motion is None:
         bound = "the scene has no motion, so there is no transient"
         raise InvalidValue("t_end", t_end, bound, "add one, or leave it out")
@@ -173,7 +173,7 @@ def _check_budget(budget: float) -> float:
 def _end(scene: Scene) -> float:
     """Return the default end of transients [s]: a hundred periods of the first mode after the start-up.
 
-    A start-up of more than 900 periods is not included, and the end is not after that of the motion.
+    A start-up of more than 900 periods is not included.  The end is at most the end of the motion.
     """
     assert scene.motion is not None
     model = choose_model(scene, "ritz", np.zeros(1), 1, target=1e-3)
