@@ -172,7 +172,7 @@ def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None
         f"beginning with {scene.name}.",
         f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
     ]
-    # An error was raised above for a scene with a parameter that the data do not determine.
+    # It is None only if the data do not determine a parameter, for which an error was raised above.
     assert found.scene_found is not None
     write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
 

@@ -216,9 +216,9 @@ def inputs_of(scene: bd.Scene) -> list[Input]:
     """Return the inputs that a study may vary, numbers of the scene file and the speed, with descriptions."""
 
     class ByWholeName(Input):
-        """An input without a key of its own in a file; its path without "beam." serves as its name.
+        """An input that has no key of its own in a scene file; its name is its path without "beam.".
 
-        Such inputs are the factor of a property that varies along the beam, and an entry of a list.
+        It is a factor by which a property that varies along the beam is multiplied, or one entry of a list.
         """
 
         @property

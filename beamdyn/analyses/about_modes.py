@@ -41,7 +41,7 @@ def equilibrium(
     Parameters
     ----------
     branch
-        straight: the equilibrium that follows from rest as the speed rises; bent: the stable one that
+        straight: the equilibrium on the branch that begins at rest; bent: the stable equilibrium that
         exists besides it at high speed. Default: as the scene's physics requires.
     """
     return bd.equilibrium(scene, speed, branch, discretization)

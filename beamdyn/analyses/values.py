@@ -63,7 +63,7 @@ def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
 
 
 def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = None) -> float:
-    """Read a positive number with its unit, in SI units; with a scene, a speed as by `parse_speed`."""
+    """Read a positive number with its unit, in SI units; with a scene, a speed, as `parse_speed` does."""
     value = parse_quantity(option, text, unit) if scene is None else parse_speed(option, text, scene)
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')

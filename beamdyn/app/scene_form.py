@@ -124,7 +124,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
             given = {
                 path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text
             }
-            # Column headings of beam.stations.
+            # The column headings in the field beam.stations count as given inputs.
             given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}
             if "matrices" in given:
                 return [MatricesInput]
@@ -133,7 +133,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
         kinds[f"{table}.kind"] = tuple(by_kind)
         chosen = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-        # The first kind, for a table that has keys but no kind.
+        # A table that has keys but no kind gets the first kind.
         usual = next(iter(by_kind)) if chosen else ""
         return [by_kind.get(entries.get(f"{table}.kind", "") or usual, _NoKind)]
 

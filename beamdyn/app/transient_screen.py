@@ -161,7 +161,7 @@ def drawings(answer: Playable, place: float = 1.0) -> Rows:
 
 
 def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
-    """Return times [s] from `periods` periods before the time `now` to as many after, in the simulation."""
+    """Return times [s] from `periods` periods before `now` to as many after it, within the simulated time."""
     path, reach = answer.run.path, periods * answer.period
     return np.linspace(max(now - reach, path.start), min(now + reach, path.end), _TIMES)
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 30  # largest number of rows in the table of a study
 _DIGITS = 10  # largest number of digits of a speed or frequency
-# Largest number of digits of a derivative, and of results side by side in a table.
+# Largest number of digits of a derivative; largest number of results side by side in a table.
 _DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4
 _RPM = 30 / np.pi  # revolutions per minute in one rad/s
 # Relative distance of a frequency from its upper bound, below which it counts as close to the bound.
@@ -285,7 +285,7 @@ def _margins(result: bd.Campbell) -> Iterator[Columns]:
             Column("frequency", attributes(found, "frequency"), "Hz"),
             Column("nearest line", attributes(found, "line.name")),
             Column("margin", (), cells=sizes),
-            title="Margins: frequency of the nearest line over the natural frequency, less one",
+            title="Margins: frequency of the nearest line divided by the natural frequency, minus 1",
         )
 
 

@@ -127,7 +127,7 @@ def _bar(pace: Pace) -> Progress:
 
     counted = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[count]}")
     screen = Console(stderr=True, force_terminal=True)
-    # rich must not redirect standard output, or it would print redirected output on the terminal.
+    # Otherwise rich would print on the terminal what the user redirects from standard output to a file.
     return Progress(
         *counted, TimeElapsedColumn(), Remaining(),
         console=screen, transient=True, redirect_stdout=False, redirect_stderr=False,
@@ -218,9 +218,10 @@ def spell_output(stream: TextIOWrapper) -> None:
 
 
 class Terminal(Console):
-    """A console for standard output whose column widths allow for characters that the terminal cannot show.
+    """A console for standard output that replaces characters that the terminal cannot show.
 
-    If the reader of a pipe closes it, as `head` does, the command goes on without output.
+    It does so before the widths of columns are computed.  If the reader of a pipe closes it, as `head` does,
+    the command goes on without output.
     """
 
     def render_str(self, text: str, **options: Any) -> Text:  # pyright: ignore[reportIncompatibleMethodOverride]

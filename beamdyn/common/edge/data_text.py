@@ -182,7 +182,7 @@ class NamedValue:
 
 
 def plain_name(name: str) -> str:
-    """Return a name in lower case without brackets, colons, underscores and blanks, in which files differ."""
+    """Return a name in lower case, without brackets, colons, underscores and blanks: files differ in them."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 

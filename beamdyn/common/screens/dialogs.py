@@ -157,7 +157,7 @@ class LinkDialog:
                 self._copy: Any = ui.button("Copy").props("no-caps")
                 ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
         field = json.dumps(f"#{self._link.html_id}")
-        # This id belongs to the input field, or to an element that contains it.
+        # The element with the id `field` is the input field itself, or contains it.
         take = f"document.querySelector({field})"
         self._copy.on(
             "click",
