@@ -46,7 +46,7 @@ SLOW_BASES = ErrorMargin(
 BASES_OF_FIELDS = ErrorMargin(
     12.0,
     "frequencies of two Ritz bases, with two planes of bending, shear or springs at the root",
-    "a mode may need more functions of one field only, and neither basis has them",
+    "a mode may need more functions of one field, such as shear, and neither basis has them",
     "stated_physics_errors",
 )
 ROUNDING_OF_TWO = ErrorMargin(
@@ -57,7 +57,7 @@ ROUNDING_OF_TWO = ErrorMargin(
 )
 BASES_OF_PLATES = ErrorMargin(
     1.5,
-    "frequencies of a strip as a plate in two bases of up to 12 functions along and across",
+    "frequencies of a strip, modelled as a plate, in two bases of up to 12 functions along and across",
     "corner stresses at the clamp make convergence algebraic: functions left out may change a "
     "frequency more than the last ones added did",
     "stated_plate_errors",
@@ -77,7 +77,7 @@ LINEAR_MODES = ErrorMargin(
 BASES_OF_STATIC_LOADS = ErrorMargin(
     1.5,
     "loads along the span of two discretizations",
-    "loads in equilibrium converge regularly, but differently at each station",
+    "loads in equilibrium converge regularly, but at a different rate at each station",
     "stated_load_errors",
 )
 MODES_OF_MOMENTS = ErrorMargin(

@@ -81,7 +81,7 @@ def _beside(
     columns: Sequence[str] = (),
     **_: Any,
 ) -> bd.FrequencyComparison | bd.CurveComparison:
-    """Compare measured values with those computed for the unchanged scene."""
+    """Compare measured values with those computed for the scene, without fitting its inputs to them."""
     from beamdyn.studies.beside_data.compare import beside  # slow import, not needed for help texts
 
     given = _data(data, measured, speeds, uncertainty, columns)
@@ -205,7 +205,7 @@ def _data(
 
 
 def _columns(text: str) -> dict[str, str]:
-    """Read the option ``--columns``: for each known heading, the heading of the column in the file."""
+    """Read ``--columns``: return which heading in the file stands for each heading of this package."""
     parts = [part.partition("=") for part in text.split(";") if part.strip()]
     if not parts or not all(head.strip() and source.strip() for head, _, source in parts):
         raise ValueError(f'--columns = "{text}": give e.g. "tip = TipDxb1; root moment = RootMyb1"')
@@ -226,7 +226,8 @@ def _with_uncertainty(
 ) -> bd.MeasuredFrequencies | MeasuredCurves:
     """Add the uncertainty in the option ``--uncertainty`` to data without uncertainties.
 
-    A percentage refers to each frequency, or to the largest value of any other column.
+    A percentage refers to the measured frequency, or, in a column of another quantity, to the column's
+    largest value.
     """
     share = text.strip().endswith("%")
     if isinstance(data, MeasuredCurves):

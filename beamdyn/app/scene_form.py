@@ -166,8 +166,8 @@ def _read_with_speed(tables: Mapping[str, Any], table: str, key: str) -> tuple[S
     """Read a scene, a speed [rad/s] and the number of modes.
 
     Results are shown in the unit of this speed, unless it is rad/s.  A speed whose computation would take
-    minutes is an error: the faster the beam rotates, the more functions each mode needs.  The limit depends
-    on the stiffness of the beam, not on the stiffness of the root, which may be a hinge.
+    minutes is an error: the faster the beam rotates, the more basis functions each mode needs.  The limit
+    depends on the stiffness of the beam, not on the stiffness of the root, which may be a hinge.
     """
     speed, modes = getattr(read_aside(tables, table), key), read_aside(tables, "options").modes
     scene = read_scene(tables)

@@ -256,7 +256,7 @@ def loads_csv(result: bd.SpanLoads) -> Columns:
 
 
 def _places(result: bd.SpanLoads, times: int = 1) -> tuple[Column, Column]:
-    """Make columns of position and side of each station, repeated `times` times."""
+    """Make columns of each station's position and side (inboard or outboard of a jump), `times` times."""
     sides = np.where(result.inboard, "inboard", "outboard")
     return Column("position", np.tile(result.x, times), "m"), Column("side", np.tile(sides, times))
 

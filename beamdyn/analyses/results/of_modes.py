@@ -39,12 +39,12 @@ _AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the bending directio
 
 
 def said_of_model(result: Result, sentence: str) -> str:
-    """Return a sentence on the model of a result, with inputs named as in files and the result's units."""
+    """Reword a sentence on the model of a result: with input names as in files, and the result's units."""
     return in_files(sentence, result.display_units)
 
 
 def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str = "") -> str:
-    """Return the sentence below a table over speeds: the changes by neglected effects, where largest.
+    """Return the sentence below a table over speeds: the largest changes that neglected effects may cause.
 
     `what` is a noun for several values at one speed, such as "mode"; empty if there is one value.
     """

@@ -109,7 +109,7 @@ def _without(value: np.ndarray, status: np.ndarray) -> list[str | None]:
 
 
 def _plain_name(label: str) -> str:
-    """Return a label as part of a column heading: mode number, or combination frequency in words."""
+    """Return a label as part of a column heading: "1" for "mode 1", with words for plus and minus signs."""
     label = label.replace("+", " plus ").replace("-", " minus ")
     return name_in_heads(label.removeprefix("mode "))
 

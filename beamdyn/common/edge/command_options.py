@@ -43,7 +43,7 @@ _SUFFIXES = {
 
 
 class Files:
-    """Output files: base class of the options that commands of all kinds share."""
+    """Base class of the options for output files, which all commands share."""
 
     plot: Path | None = None
     json: Path | None = None

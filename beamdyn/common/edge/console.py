@@ -146,7 +146,8 @@ def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
     Yields
     ------
     callable
-        To be called with the numbers of steps that are done and of all; without calls the line has no bar.
+        Function to call with the number of finished steps and the number of all steps; the line has a bar
+        only if it is called.
     """
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda done, total: None
@@ -312,7 +313,7 @@ class FittedTable(Table):
     def _part(self, places: Sequence[int], needed: Sequence[int], numbered: bool) -> Table:
         """Make a table from the columns with indices `places`, with row numbers in front if `numbered`.
 
-        `needed` contains the width of every column, to which headings are broken.
+        `needed` contains the width of each column of the table; headings are broken to fit into it.
         """
         made = Table(box=self.box, padding=self.padding)
         if numbered:
@@ -419,7 +420,7 @@ def _values(column: Column) -> Sequence[str | Text]:
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
-    """Make a table of comparisons, with a rule where the first two words of `Comparison.what` change."""
+    """Make a table of comparisons; a line separates rows whose `what` differs in its first two words."""
     cells: list[list[str]] = []
     topics: list[list[str]] = []
     for row in rows:

@@ -133,7 +133,7 @@ def _terminated_as_interrupted() -> Iterator[None]:
 
 @contextmanager
 def _as_sentences(name: str) -> Iterator[None]:
-    """In this context, print warnings of the packages as plain sentences, without file and line."""
+    """In this context, print each `UserWarning` as a plain sentence, without file and line number."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:

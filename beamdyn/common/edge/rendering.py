@@ -141,7 +141,7 @@ def _shown(ax: Axes) -> tuple[object, ...]:
 
 
 def _only(figure: Figure, parts: Sequence[Artist]) -> str:
-    """Return some parts of a figure and of its axes as SVG, without its end tag."""
+    """Return some parts of a figure and of its axes as SVG, without the end tag of the SVG."""
     kept = {*parts, *figure.axes}
     found = (part for whole in (figure, *figure.axes) for part in whole.get_children())
     others = [part for part in found if part not in kept and part.get_visible()]

@@ -56,7 +56,7 @@ def given_fields(thing: Any) -> Iterator[str]:
         value = getattr(thing, each.name)
         try:
             usual = each.default is not dataclasses.MISSING and bool(value == each.default)
-        except ValueError:  # arrays have no single truth value
+        except ValueError:  # the comparison of arrays has no single truth value
             usual = False
         if each.repr and not usual:
             yield f"{each.name}={brief(value)}"
