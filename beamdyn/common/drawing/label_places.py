@@ -276,7 +276,7 @@ class _Chosen:
         return found
 
     def best(self, label: int, before: int | None = None) -> int | None:
-        """Return the index of a label's cheapest candidate that collides with no label; None if there is none.
+        """Return the index of a label's cheapest candidate that collides with no label; None without one.
 
         Only the first `before` candidates count; all if it is None.
         """

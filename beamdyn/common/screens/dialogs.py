@@ -151,7 +151,7 @@ class LinkDialog:
             self._link: Any = ui.input("link").classes("w-full").props("readonly outlined dense")
             self._said: Any = ui.label().classes("mistake").props('role="alert"')
             ui.label(
-                "The address holds the whole design. It opens wherever this program runs at the same address."
+                "The link contains the whole design. It works wherever this program runs at the same address."
             ).classes("status")
             with ui.row():
                 self._copy: Any = ui.button("Copy").props("no-caps")
