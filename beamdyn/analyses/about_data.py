@@ -33,7 +33,7 @@ Data = Annotated[
         help='File of measured values. Its columns may have the headings "speed [rpm], frequency 1 [Hz]", '
         '"time [s], tip [mm]", "speed [rpm], from [s], to [s], largest tip [mm]", '
         '"position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]" or '
-        '"position [mm], shape at 62.1 Hz"; or it is a list of ANSYS, output of FAST, or a universal file.',
+        '"position [mm], shape at 62.1 Hz"; or it is an ANSYS listing, FAST output or a universal file.',
     ),
 ]
 Measured = Annotated[
@@ -168,11 +168,11 @@ def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None
     values = dict(zip(found.names, found.value.tolist(), strict=True))
     ranges = ", ".join(found.says(k) for k in range(len(values)))
     head = [
-        f"Found by beamdyn {found.provenance.version} identify from {source or 'frequencies given'}, "
-        f"beginning with {scene.name}.",
+        f"Found by beamdyn identify ({found.provenance.version}) from {source or 'given frequencies'}; "
+        f"all other inputs are those of {scene.name}.",
         f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
     ]
-    # It is None only if the data do not determine a parameter, for which an error was raised above.
+    # `scene_found` is None only if the data do not determine a parameter: an error was then raised above.
     assert found.scene_found is not None
     write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
 

@@ -88,7 +88,7 @@ class RandomInput:
         if self.psd is not None:
             if self.highest is not None:
                 raise ValueError(
-                    f'--highest = "{self.highest}": it limits a road; --psd has its own range; leave it out'
+                    f'--highest = "{self.highest}": it limits a road; --psd has a range itself; leave it out'
                 )
             drive = self.drive
             unit = "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz"

@@ -38,7 +38,7 @@ Varied = Annotated[
     ),
 ]
 Workers = Annotated[_Workers, Parameter(help="Number of processes; the result is the same for any number.")]
-Store = Annotated[Folder, Parameter(help="Folder for finished results; the same command resumes from there.")]
+Store = Annotated[Folder, Parameter(help="Folder for finished results; the same command resumes from them.")]
 
 
 @analysis(

@@ -51,7 +51,7 @@ def transient_table(run: bd.Transient, window: tuple[float, float] | None = None
     modes = f"modal truncation error {size}"
     if math.isnan(run.time_error):
         errors = (
-            "The time-integration error is not estimated: this integrator bounds errors of single steps. "
+            "The time-integration error is not estimated: this integrator only limits single-step errors. "
             f"Estimated {modes}."
         )
     else:

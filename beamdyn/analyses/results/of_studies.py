@@ -117,7 +117,7 @@ def _plain_name(label: str) -> str:
 def sensitivities_table(result: bd.Sensitivities) -> Group:
     """Make a table of input values, derivatives of each result, and relative changes."""
     values = [f"{a} {v:.6g} {result.unit}" for a, v in zip(result.answers, result.value, strict=True)]
-    said = f"{'; '.join(values)}. Derivatives: in {result.unit} over the SI unit of the input."
+    said = f"{'; '.join(values)}. Derivatives: in {result.unit} per SI unit of the input."
     numbers = np.array([each.value for each in result.inputs])[:, None]
     with np.errstate(invalid="ignore"):
         error = result.error * np.abs(numbers / result.value)

@@ -266,7 +266,7 @@ class VaryOptions:
         """Raise an error for options that have no effect unless an input is varied."""
         for name in ("together", "workers", "store"):
             if not self.vary and getattr(self, name) != getattr(NOTHING_VARIED, name):
-                raise ValueError(f"--{name} goes with {OPTION}: without it there is one design only")
+                raise ValueError(f"--{name} goes with {OPTION}: without {OPTION} there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
         """Return a `TaskRunner` that computes designs in `workers` processes, and stores results in `store`.
