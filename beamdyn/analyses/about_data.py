@@ -142,7 +142,8 @@ def identify(
         Names of the unknown inputs in the file, separated by commas, each with or without bounds:
         "beam.thickness=0.1:0.3 mm, mount.root_stiffness".
     starts
-        Largest number of starting points of the search: those that fit the data best.
+        Largest number of points at which the search starts: of all random points, those that fit the data
+        best.
     seed
         Seed of the random starting points.
     write

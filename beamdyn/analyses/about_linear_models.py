@@ -40,7 +40,7 @@ class RandomInput:
     ----------
     psd : Path, optional
         One-sided power spectral density of the input: a CSV file with the columns f [Hz] and psd [m2/s4/Hz]
-        or [g2/Hz], for a force [N2/Hz].
+        or psd [g2/Hz] for an acceleration, or psd [N2/Hz] for a force.
     psd_axes : str, optional
         Axes on which the density is interpolated linearly between the points of --psd: log, as in standards,
         or linear, which may begin at 0 Hz; default: log.
@@ -217,7 +217,7 @@ def matrices(
     Parameters
     ----------
     modes
-        Number of modes as coordinates; default: all functions of the discretization.
+        Number of modes that serve as coordinates; by default, all functions of the discretization do.
     discretization
         ritz: assumed modes; fem: finite elements.
     """

@@ -347,7 +347,7 @@ def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
 
 
 def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:
-    """Refuse unknown combinations, repeated inputs, unequal lengths in a zip, and too many designs.
+    """Refuse an unknown `combine`, repeated inputs, inputs of unequal length in a zip, and too many designs.
 
     Parameters
     ----------
