@@ -27,8 +27,8 @@ SHOWN_BY.update(
     for room in rooms
 )
 
-# Imports of the public names, for type checkers only.  At run time `__getattr__` loads each name, when it is
-# first used, from the module that stands here.
+# These imports of the public names are for type checkers only.  At run time `__getattr__` reads from them in
+# which module a name is, and loads this module when the name is first used.
 if TYPE_CHECKING:
     from numpy.polynomial import Polynomial
 
@@ -153,7 +153,7 @@ if TYPE_CHECKING:
 @cache
 def _modules() -> dict[str, str]:
     """Return the module of each public name, read from the block ``if TYPE_CHECKING`` of this file."""
-    import ast  # imported here, where it is needed: it would lengthen the import of this package by a fifth
+    import ast  # not at the top: it would lengthen the import of this package by a fifth
 
     with open(__file__, encoding="utf-8") as file:
         tree = ast.parse(file.read())

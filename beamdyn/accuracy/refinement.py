@@ -40,13 +40,13 @@ class ErrorMargin(NamedTuple):
 SLOW_BASES = ErrorMargin(
     3.0,
     "frequencies of two Ritz bases, where convergence is slow",
-    "all functions left out may together change a mode more than the functions added last did",
+    "all basis functions left out may together change a mode more than those that were added last",
     "stated_frequency_errors",
 )
 BASES_OF_FIELDS = ErrorMargin(
     12.0,
     "frequencies of two Ritz bases, with two planes of bending, shear or springs at the root",
-    "a mode may need more functions of one field only, and neither basis has them",
+    "a mode may need more functions of one field, such as shear, and neither basis has them",
     "stated_physics_errors",
 )
 ROUNDING_OF_TWO = ErrorMargin(
@@ -57,7 +57,7 @@ ROUNDING_OF_TWO = ErrorMargin(
 )
 BASES_OF_PLATES = ErrorMargin(
     1.5,
-    "frequencies of a strip as a plate in two bases of up to 12 functions along and across",
+    "frequencies of a strip, modelled as a plate, in two bases of up to 12 functions along and across",
     "corner stresses at the clamp make convergence algebraic: functions left out may change a "
     "frequency more than the last ones added did",
     "stated_plate_errors",
@@ -65,7 +65,7 @@ BASES_OF_PLATES = ErrorMargin(
 LINEAR_MESHES = ErrorMargin(
     2.0,
     "responses and poles of two discretizations",
-    "responses converge as fast as the frequencies, but peaks magnify errors of frequency",
+    "responses converge as fast as the frequencies, but resonance peaks magnify errors of frequencies",
     "responses",
 )
 LINEAR_MODES = ErrorMargin(
@@ -77,20 +77,20 @@ LINEAR_MODES = ErrorMargin(
 BASES_OF_STATIC_LOADS = ErrorMargin(
     1.5,
     "loads along the span of two discretizations",
-    "loads in equilibrium converge regularly, but differently at each station",
+    "loads in equilibrium converge regularly, but at a different rate at each station",
     "stated_load_errors",
 )
 MODES_OF_MOMENTS = ErrorMargin(
     3.0,
     "moments and strains with n modes and with 1.5 n modes",
-    "after a sudden load, mode k contributes as k^-3: all modes above n contribute up to 2.2 times as much "
+    "after a sudden load, mode k contributes ~ k^-3: all modes above n contribute up to 2.2 times as much "
     "as modes n + 1 to 1.5 n",
     "stated_load_errors",
 )
 MODES_OF_FORCES = ErrorMargin(
     4.0,
     "shear forces with n modes and with 1.5 n modes",
-    "mode k contributes as k^-2: modes above n contribute up to 3.6 times as much as those to 1.5 n",
+    "mode k contributes ~ k^-2: modes above n contribute up to 3.6 times as much as n + 1 to 1.5 n",
     "stated_load_errors",
 )
 STEPS = ErrorMargin(
@@ -112,8 +112,8 @@ THREE_DISCRETIZATIONS = ErrorMargin(
     "the rate of convergence varies from one discretization to the next",
     "stated_answer_errors",
 )
-# Least estimated sum of all further differences, as a fraction of the previous difference, since the last
-# difference may be small by chance.
+# Lower limit of an error estimated from three results, before the safety factor: a fraction of the difference
+# between the two coarser results, since the difference between the two finer ones may be small by chance.
 _LEAST_SHARE = 0.0015
 
 
@@ -170,7 +170,8 @@ def refine(
     first : Answer
         Result of the smallest model.
     finer : callable
-        Function from a result to that of the next larger model, or to None in order to keep the given one.
+        Function that takes a result and returns the result of the next larger model, or None if there is no
+        larger model or it is not worth the time: the result that it was given is then the last one.
     meets : callable
         Function that returns whether a result is accurate enough.
 

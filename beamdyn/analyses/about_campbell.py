@@ -57,7 +57,10 @@ def campbell(
 
 
 def parse_top(text: str, scene: bd.Scene | None, bent: bool) -> tuple[Any, str]:
-    """Return speeds [rad/s] up to the top speed, fewer for large deflections (`bent`), and their unit."""
+    """Read a top speed, such as "15 rpm": return speeds from 0 to it [rad/s], and the unit for display.
+
+    The speeds are evenly spaced; with large deflections (`bent`) there are fewer.
+    """
     top = parse_positive("--top-speed", text, "rad/s", scene)
     unit, _ = unit_as_written(text, "rad/s")
     count = _SPEEDS_OF_BENT if bent else _SPEEDS

@@ -33,7 +33,7 @@ Data = Annotated[
         help='File of measured values. Its columns may have the headings "speed [rpm], frequency 1 [Hz]", '
         '"time [s], tip [mm]", "speed [rpm], from [s], to [s], largest tip [mm]", '
         '"position [m], moment [N m]", "frequency [Hz], tip by tip force [mm/N]" or '
-        '"position [mm], shape at 62.1 Hz"; or it is a list of ANSYS, output of FAST, or a universal file.',
+        '"position [mm], shape at 62.1 Hz"; or it is an ANSYS listing, FAST output or a universal file.',
     ),
 ]
 Measured = Annotated[
@@ -81,7 +81,7 @@ def _beside(
     columns: Sequence[str] = (),
     **_: Any,
 ) -> bd.FrequencyComparison | bd.CurveComparison:
-    """Compare measured values with those computed for the unchanged scene."""
+    """Compare measured values with those computed for the scene, without fitting its inputs to them."""
     from beamdyn.studies.beside_data.compare import beside  # slow import, not needed for help texts
 
     given = _data(data, measured, speeds, uncertainty, columns)
@@ -142,7 +142,8 @@ def identify(
         Names of the unknown inputs in the file, separated by commas, each with or without bounds:
         "beam.thickness=0.1:0.3 mm, mount.root_stiffness".
     starts
-        Largest number of starting points of the search: those that fit the data best.
+        Largest number of points at which the search starts: of all random points, those that fit the data
+        best.
     seed
         Seed of the random starting points.
     write
@@ -168,11 +169,11 @@ def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None
     values = dict(zip(found.names, found.value.tolist(), strict=True))
     ranges = ", ".join(found.says(k) for k in range(len(values)))
     head = [
-        f"Found by beamdyn {found.provenance.version} identify from {source or 'frequencies given'}, "
-        f"beginning with {scene.name}.",
+        f"Found by beamdyn identify ({found.provenance.version}) from {source or 'given frequencies'}; "
+        f"all other inputs are those of {scene.name}.",
         f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
     ]
-    # An error was raised above for a scene with a parameter that the data do not determine.
+    # `scene_found` is None only if the data do not determine a parameter: an error was then raised above.
     assert found.scene_found is not None
     write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
 
@@ -205,7 +206,7 @@ def _data(
 
 
 def _columns(text: str) -> dict[str, str]:
-    """Read the option ``--columns``: for each known heading, the heading of the column in the file."""
+    """Read ``--columns``: return which heading in the file stands for each heading of this package."""
     parts = [part.partition("=") for part in text.split(";") if part.strip()]
     if not parts or not all(head.strip() and source.strip() for head, _, source in parts):
         raise ValueError(f'--columns = "{text}": give e.g. "tip = TipDxb1; root moment = RootMyb1"')
@@ -226,7 +227,8 @@ def _with_uncertainty(
 ) -> bd.MeasuredFrequencies | MeasuredCurves:
     """Add the uncertainty in the option ``--uncertainty`` to data without uncertainties.
 
-    A percentage refers to each frequency, or to the largest value of any other column.
+    A percentage refers to the measured frequency, or, in a column of another quantity, to the column's
+    largest value.
     """
     share = text.strip().endswith("%")
     if isinstance(data, MeasuredCurves):

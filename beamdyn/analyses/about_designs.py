@@ -66,8 +66,8 @@ def sensitivities(
         frequencies; critical_speed, at which the beam buckles; or crossings, the speeds at which
         modes meet lines of the excitation.
     speed
-        Speed of frequencies with its unit, top speed of crossings; default: the final speed of the
-        scene's motion, or 0 without one.
+        Speed at which frequencies are computed, or up to which crossings are searched, with its unit;
+        default: the final speed of the scene's motion, or 0 without one.
     modes
         Number of modes of frequencies and crossings, from the lowest; default: 3.
     order
@@ -132,10 +132,11 @@ def study(
         frequencies, with their errors; critical_speed, at which the beam buckles; crossings, the
         speeds at which modes meet lines of the excitation; amplitude, of the tip in steady motion;
         peak, its largest deflection in a window of time; strain, the largest along the span in
-        steady motion; or power, the mean that a harvester yields.
+        steady motion; or power, the mean power of a harvester.
     speed
-        Speed of frequencies and responses with its unit, where it is not varied; top speed of
-        crossings. Default: the final speed of the scene's motion, or 0 without one.
+        Speed at which frequencies and responses are computed, if it is not varied, or up to which
+        crossings are searched, with its unit; default: the final speed of the scene's motion, or 0
+        without one.
     modes
         Number of modes of frequencies and crossings, from the lowest; default: 3. Responses take as
         many as they need.
@@ -216,9 +217,9 @@ def inputs_of(scene: bd.Scene) -> list[Input]:
     """Return the inputs that a study may vary, numbers of the scene file and the speed, with descriptions."""
 
     class ByWholeName(Input):
-        """An input without a key of its own in a file; its path without "beam." serves as its name.
+        """An input that has no key of its own in a scene file; its name is its path without "beam.".
 
-        Such inputs are the factor of a property that varies along the beam, and an entry of a list.
+        It is a factor by which a property that varies along the beam is multiplied, or one entry of a list.
         """
 
         @property

@@ -40,7 +40,7 @@ class RandomInput:
     ----------
     psd : Path, optional
         One-sided power spectral density of the input: a CSV file with the columns f [Hz] and psd [m2/s4/Hz]
-        or [g2/Hz], for a force [N2/Hz].
+        or psd [g2/Hz] for an acceleration, or psd [N2/Hz] for a force.
     psd_axes : str, optional
         Axes on which the density is interpolated linearly between the points of --psd: log, as in standards,
         or linear, which may begin at 0 Hz; default: log.
@@ -88,7 +88,7 @@ class RandomInput:
         if self.psd is not None:
             if self.highest is not None:
                 raise ValueError(
-                    f'--highest = "{self.highest}": it limits a road; --psd has its own range; leave it out'
+                    f'--highest = "{self.highest}": it limits a road; --psd has a range itself; leave it out'
                 )
             drive = self.drive
             unit = "N2/Hz" if drive is not None and drive.unit == "N" else "m2/s4/Hz"
@@ -101,11 +101,11 @@ class RandomInput:
         )
 
     def shown(self, scene: bd.Scene) -> bd.Scene:
-        """Return the scene, with results displayed in the unit of the given speed."""
+        """Return the scene, set so that results are displayed in the unit of the option `speed`, if given."""
         return in_unit_of(scene, self.speed)
 
     def speed_of(self, scene: bd.Scene) -> float:
-        """Return the speed [rad/s]: as given, of a wheel rolling at a given velocity, or the scene's."""
+        """Return the speed [rad/s]: from the option `speed` or `velocity`, else the scene's final speed."""
         if self.velocity is None:
             return scene.final_speed if self.speed is None else parse_speed("--speed", self.speed, scene)
         if self.speed is not None:
@@ -121,7 +121,7 @@ NO_RANDOM_INPUT = RandomInput()
 
 
 def parse_input(text: str) -> inputs_outputs.Excitation:
-    """Read the excitation in the option ``--input``: a word, or a force at a position with its unit."""
+    """Read ``--input``: a direction of base acceleration, such as "n2", or a force, such as "force@20 mm"."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] != "force":
         return inputs_outputs.as_excitation("--input", text.strip())
@@ -129,7 +129,7 @@ def parse_input(text: str) -> inputs_outputs.Excitation:
 
 
 def parse_output(text: str) -> inputs_outputs.Observation:
-    """Read the output in the option ``--output``: a word, or a deflection or acceleration at a position."""
+    """Read ``--output``: a quantity, such as "root moment", or one at a position: "deflection@20 mm"."""
     match = _AT.fullmatch(text.strip())
     if match is None or match[1] == "force":
         return inputs_outputs.as_observation("--output", text.strip())
@@ -217,7 +217,7 @@ def matrices(
     Parameters
     ----------
     modes
-        Number of modes as coordinates; default: all functions of the discretization.
+        Number of modes that serve as coordinates; by default, all functions of the discretization do.
     discretization
         ritz: assumed modes; fem: finite elements.
     """

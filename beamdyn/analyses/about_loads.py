@@ -63,7 +63,7 @@ class CycleOptions:
     def check(self, in_transient: bool) -> None:
         """Raise an error for options that would have no effect, or whose values are not valid.
 
-        None of the options has an effect on other analyses than a transient.
+        All of these options affect transients only.
         """
         if self.cycles is not None and not in_transient:
             raise ValueError("--cycles belongs to a transient: give --t-end, too")
@@ -236,7 +236,10 @@ def random_loads(
 
 
 def _check_together(kinds: list[str], angle: float | None, window: str | None) -> None:
-    """Raise an error for options of different analyses; `kinds` are the given options that choose one."""
+    """Raise an error for options of different analyses.
+
+    `kinds` are those of --speed, --t-end and --speeds that are given: each chooses an analysis.
+    """
     if len(kinds) > 1:
         raise ValueError(
             f"{' and '.join(kinds)}: give one of them: --speed for the equilibrium, --t-end for a transient, "

@@ -41,7 +41,7 @@ def equilibrium(
     Parameters
     ----------
     branch
-        straight: the equilibrium that follows from rest as the speed rises; bent: the stable one that
+        straight: the equilibrium on the branch that begins at rest; bent: the stable equilibrium that
         exists besides it at high speed. Default: as the scene's physics requires.
     """
     return bd.equilibrium(scene, speed, branch, discretization)
@@ -146,13 +146,13 @@ def limits(
     discretization: options.Discretization = "ritz",
     outputs: AnswerFiles = NO_ANSWER_FILES,
 ) -> Answer:
-    """Setting angles above which the first frequency rises with speed: near rest, and up to the top speed.
+    """Setting angles above which the first frequency rises with speed: at low speed, and up to a top speed.
 
     Parameters
     ----------
     top_speed
-        Speed up to which the frequency must rise for the second of these angles, with its unit, e.g. "400
-        rad/s".
+        Above the second of these angles, the first frequency rises from rest up to this speed; with its
+        unit, e.g. "400 rad/s".
     """
     result = bd.setting_angle_limits(scene, top_speed, discretization).in_units(speed=scene.units.speed)
     if isnan(result.first) or isnan(result.second):

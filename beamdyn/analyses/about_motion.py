@@ -264,7 +264,8 @@ def sweep(
     scheduler
         Address of a Dask scheduler, e.g. tcp://host:8786.
     store
-        Folder for finished speeds: after an interruption the same command computes only the others.
+        Folder for the results of finished speeds: after an interruption, the same command computes only the
+        other speeds.
     """
     with _executor(scheduler) as executor, _progress(len(speeds), store) as progress:
         means: dict[str, Any] = {"workers": workers, "executor": executor, "store": store}

@@ -46,7 +46,7 @@ def tradeoff(
         Number of modes, from the lowest; at most 20.
     t_end
         End of the transients with its unit, e.g. "2 s"; default: a hundred periods of the first
-        mode after the spin-up; from rest if the spin-up takes more than 900 periods.
+        mode, counted from the end of the spin-up, or from rest if the spin-up takes more than 900 periods.
     budget
         Approximate computing time, e.g. "60 s"; measurements that do not fit are left out and
         listed.

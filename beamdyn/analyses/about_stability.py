@@ -38,7 +38,7 @@ Varied = Annotated[
     ),
 ]
 Workers = Annotated[_Workers, Parameter(help="Number of processes; the result is the same for any number.")]
-Store = Annotated[Folder, Parameter(help="Folder for finished results; the same command resumes from there.")]
+Store = Annotated[Folder, Parameter(help="Folder for finished results; the same command resumes from them.")]
 
 
 @analysis(
@@ -109,8 +109,8 @@ def _varied(
 ) -> tuple[bd.Scene, dict[str, np.ndarray], dict[str, tuple[str, float]]]:
     """Read the two varied inputs of a stability chart.
 
-    Return the scene, displayed in the unit of a speed that is varied, the inputs' values [SI], and the units
-    in which they were given.
+    Return the scene, set to display results in the unit of the speed if this is varied; the values of each
+    input, by its path [SI units]; and the unit in which each was given, with its size in SI units.
     """
     if not vary:
         return scene, _about(scene), {}

@@ -105,8 +105,8 @@ def _value(text: str, unit: str, scene: bd.Scene) -> float:
 def _write(found: bd.FoundDesign, scene: Path, to: Path) -> None:
     wanted = ", ".join(each.says for each in found.targets)
     head = [
-        f"Found by beamdyn {found.provenance.version} design, beginning with {scene.name}.",
-        f"{'It has' if found.found else 'It comes nearest to'}: {wanted}.",
+        f"Found by beamdyn design ({found.provenance.version}); all other inputs are those of {scene.name}.",
+        f"This scene {'has' if found.found else 'comes nearest to'}: {wanted}.",
     ]
     values = dict(zip(found.names, found.value.tolist(), strict=True))
     write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))

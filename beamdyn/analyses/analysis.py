@@ -73,7 +73,7 @@ class AsText:
     absent: Callable[[Scene], Any] | None = None
 
     def shown(self, option: inspect.Parameter) -> inspect.Parameter:
-        """Return the option as on the command line: its value is a text."""
+        """Return the option as the command line has it, with a text as its value."""
         notes = Parameter(allow_leading_hyphen=True), *_extras(option.annotation)
         if self.default is None and self.absent is not None:
             return option.replace(annotation=Annotated[str | None, *notes], default=None)

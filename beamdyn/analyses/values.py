@@ -33,9 +33,9 @@ def at_most(most: int) -> Parameter:
     """Describe a whole-number option with a largest value, above which a command would take hours."""
 
     def whole(kind: object, tokens: Sequence[Token]) -> int | str:
-        """Read a whole number, or "auto" if the type `kind` is not int: a converter for cyclopts.
+        """Read a whole number, or "auto" if the type of the option, `kind`, is not int.
 
-        By itself the option parser cyclopts would cut 2.5 down to 2.
+        The option parser cyclopts calls this function; by itself it would cut 2.5 down to 2.
         """
         text, auto = tokens[0].value.strip(), kind is not int
         if auto and text == "auto":
@@ -52,7 +52,7 @@ def at_most(most: int) -> Parameter:
 
 
 def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
-    """Read a number with its unit, in SI units; raise InvalidInput with the option's name if it is none.
+    """Convert a number with a unit to SI units; raise InvalidInput, naming the option, for any other text.
 
     `of` is the SI unit, or the description of the quantity.
     """
@@ -63,7 +63,7 @@ def parse_quantity(option: str, text: str, of: str | Quantity) -> float:
 
 
 def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = None) -> float:
-    """Read a positive number with its unit, in SI units; with a scene, a speed as by `parse_speed`."""
+    """Read a positive number with its unit, in SI units; with a scene, a speed, as `parse_speed` does."""
     value = parse_quantity(option, text, unit) if scene is None else parse_speed(option, text, scene)
     if value <= 0:
         raise ValueError(f'{option} = "{text}": it must be greater than 0')
@@ -71,7 +71,7 @@ def parse_positive(option: str, text: str, unit: str, scene: bd.Scene | None = N
 
 
 def parse_speed(option: str, text: str, scene: bd.Scene | None = None) -> float:
-    """Read a speed with its unit [rad/s]; raise ValueError with the option's name if it is none.
+    """Convert a speed with its unit to rad/s; raise ValueError, naming the option, for any other text.
 
     For a scene with a rolling wheel, the text may be the velocity of the vehicle, such as "60 km/h".
     """

@@ -71,7 +71,7 @@ def analysis_screen(analysis: Analysis) -> Screen:
         return answer.result
 
     def headline(answer: Answer) -> Iterator[KeyResult]:
-        # Parts that are omitted: the empty one, and the number of warnings, which the screen shows below.
+        # The summary omits empty parts, and the number of warnings, which the screen lists below.
         beside = "", warned(getattr(answer.result, "warnings", ()))
         lines = (line for line in answer.result.headline() if line not in beside)
         yield KeyResult("in short", "; ".join(map(in_files, islice(lines, _HEADLINES))))

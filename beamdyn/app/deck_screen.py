@@ -35,7 +35,7 @@ _DRAWN = {
 
 
 class DeckInput(Section):
-    """[deck]: the text of a blade's file, and the lengths that it may lack."""
+    """[deck]: the text of a blade's file, and lengths that the file may lack."""
 
     text: Annotated[
         str,
@@ -125,7 +125,7 @@ def _for_screens(deck: Deck) -> str:
 
 DECK_SCREEN = Screen(
     "Deck",
-    "A blade of another program: what its file says, what is odd in it, and the scene that it makes.",
+    "A blade in a file of another program: its data, warnings on them, and the scene made from it.",
     ("deck",),
     ("deck",),
     solve,

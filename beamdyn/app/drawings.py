@@ -165,7 +165,8 @@ def _plan() -> Drawing:
 def _section(paths: set[str]) -> Drawing:
     """Draw the cross-section at the root, seen from the tip.
 
-    Its symbols depend on the paths of the inputs in the form: h and b if "beam.thickness" is one, else c.
+    If "beam.thickness" is among the `paths` of the form's inputs, it has the symbols h (thickness) and b
+    (width); else c (distance of the surface from the centre).
     """
     s = Sketch()
     e, f = np.array([np.cos(_PSI), np.sin(_PSI)]), np.array([-np.sin(_PSI), np.cos(_PSI)])

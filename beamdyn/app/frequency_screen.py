@@ -36,7 +36,7 @@ if TYPE_CHECKING:
 CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], mode and line that cross
 _SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds, in a full and in a preliminary result
 _ROUGH = 1e-3  # tolerance of a preliminary result
-_NOT_MARKED = "resonance speeds are not marked in the drawing: their physics differs from the frequencies'"
+_NOT_MARKED = "resonance speeds are not marked: they and the frequencies were computed with different effects"
 _HEADROOM = 1.08  # height of the chart, as a multiple of the highest frequency
 _MOST_ABOVE = 2.0  # highest frequency shown, as a multiple of the highest excitation frequency
 

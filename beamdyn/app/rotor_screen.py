@@ -15,7 +15,8 @@ from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.scene.rotor import RotorDrawing
 
-# Dragged lengths are rounded to steps of a power of ten; at least so many steps make the length of the beam.
+# A length set by dragging is rounded to a multiple of a power of ten: the largest that is at most the length
+# of the beam divided by this number.
 _STEPS = 200
 
 

@@ -124,7 +124,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
             given = {
                 path.split(".")[1] for path, text in entries.items() if path.startswith("beam.") and text
             }
-            # Column headings of beam.stations.
+            # The column headings in the field beam.stations count as given inputs.
             given |= {*re.findall(r"\w+", entries.get("beam.stations", ""))}
             if "matrices" in given:
                 return [MatricesInput]
@@ -133,7 +133,7 @@ def inputs_of(entries: Mapping[str, str]) -> list[Input]:
         by_kind = {get_args(model.model_fields["kind"].annotation)[0]: model for model in models}
         kinds[f"{table}.kind"] = tuple(by_kind)
         chosen = any(text for path, text in entries.items() if path.startswith(f"{table}."))
-        # The first kind, for a table that has keys but no kind.
+        # A table that has keys but no kind gets the first kind.
         usual = next(iter(by_kind)) if chosen else ""
         return [by_kind.get(entries.get(f"{table}.kind", "") or usual, _NoKind)]
 
@@ -166,8 +166,8 @@ def _read_with_speed(tables: Mapping[str, Any], table: str, key: str) -> tuple[S
     """Read a scene, a speed [rad/s] and the number of modes.
 
     Results are shown in the unit of this speed, unless it is rad/s.  A speed whose computation would take
-    minutes is an error: the faster the beam rotates, the more functions each mode needs.  The limit depends
-    on the stiffness of the beam, not on the stiffness of the root, which may be a hinge.
+    minutes is an error: the faster the beam rotates, the more basis functions each mode needs.  The limit
+    depends on the stiffness of the beam, not on the stiffness of the root, which may be a hinge.
     """
     speed, modes = getattr(read_aside(tables, table), key), read_aside(tables, "options").modes
     scene = read_scene(tables)

@@ -174,20 +174,21 @@ def sweeps_of(outputs: Callable[[int], list[Output]], example: str, results: str
 
 
 def _warn_of_model(cases: Sequence[SweepCase]) -> Iterator[str]:
-    """Yield the warnings of two cases: that with the largest model error, and the first without a known one.
+    """Yield up to two sentences on the model errors of the cases, each with the warnings of one case.
 
-    The first is left out if no model error exceeds 1 %.
+    One is on the model errors above 1 %, with the warnings of the case that has the largest; the other is on
+    unknown model errors, with the warnings of the first case that has one.
     """
     large = [case for case in cases if case.model_error > LARGE_MODEL_ERROR]
     unknown = [case for case in cases if np.isnan(case.model_error)]
     for some, what in (
         (large, "the model error exceeds 1 %; where it is largest"),
-        (unknown, "the model error is not known; at the first"),
+        (unknown, "the model error is not known; at the first of these"),
     ):
         if some:
             first = max(some, key=lambda case: case.model_error) if some is large else some[0]
             said = dict.fromkeys(said for answer in first.answers.values() for said in warnings_of(answer))
-            warned = "; ".join(said) or "of a mode that does not vibrate, for instance"
+            warned = "; ".join(said) or "for instance, a mode does not vibrate"
             yield f"at {len(some)} of {len(cases)} values {what}: {warned}."
 
 

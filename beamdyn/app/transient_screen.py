@@ -34,7 +34,7 @@ _PLACES, _TIMES = 41, 201  # number of positions along the beam, and of times in
 _SAMPLES = 40  # number of the largest samples near which the peak is searched
 _CLOSE = 4  # length of the close-up before and after the present time, in periods of the first mode
 _MOST_SENT = 2000  # number of points of a curve on the page, enough to zoom in
-_MODES = 3  # number of modes whose resonances are marked, and of a preliminary result
+_MODES = 3  # number of modes whose resonances are marked; number of modes of a preliminary result
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,7 @@ def drawings(answer: Playable, place: float = 1.0) -> Rows:
 
 
 def _around(answer: Playable, now: float, periods: float) -> np.ndarray:
-    """Return times [s] from `periods` periods before the time `now` to as many after, in the simulation."""
+    """Return times [s] from `periods` periods before `now` to as many after it, within the simulated time."""
     path, reach = answer.run.path, periods * answer.period
     return np.linspace(max(now - reach, path.start), min(now + reach, path.end), _TIMES)
 

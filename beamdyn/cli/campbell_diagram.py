@@ -75,7 +75,7 @@ def campbell(
     labels
         Names of the scenes, separated by commas; default: the names of the files.
     length
-        Length with its unit of the one blade whose file does not say it (TipRad - HubRad).
+        Length of the blade with its unit, if the blade's file does not say it (TipRad - HubRad).
     hub_radius
         Distance of the root from the axis of rotation with its unit, if the blade's file does not say it.
     bounds

@@ -43,8 +43,8 @@ def import_deck(
         A blade file or the main file of ElastoDyn, FAST 7, OpenFAST or BeamDyn, a .bmi or section properties
         of BModes, or a CSV table with units in its headings, such as "r [m], mass [kg/m], EI flap [N m2]".
     output
-        Write the scene into this TOML file, which the other commands read; without it, only the audit is
-        printed.
+        Write the scene into this TOML file, which the other commands read; without it, the command only
+        prints the audit: mass, centre and moments of the blade, with warnings on odd data.
     length
         Length of the blade with its unit, where the file does not say it (TipRad - HubRad).
     hub_radius

@@ -26,10 +26,13 @@ def solve_lower_transposed(L: np.ndarray, B: np.ndarray) -> np.ndarray:
 
 
 def assign(cost: np.ndarray) -> np.ndarray:
-    """Return a different column index for each row of a cost matrix (n, m), n <= m, at least total cost."""
+    """Choose a different column for each row of a cost matrix (n, m), n <= m, for the least total cost.
+
+    Return the indices of the columns, shape (n,).
+    """
     least = cost.argmin(axis=1)
     if np.isfinite(cost).all() and len(np.unique(least)) == len(least):
-        return least  # the cheapest columns of the rows are all different
+        return least  # each row's cheapest column is the cheapest of no other row
     # Imported here, because this import takes as long as all others together.
     from scipy.optimize import linear_sum_assignment
 

@@ -196,12 +196,12 @@ def supported_or_range(value: float, error: float, most: int = _MOST_DIGITS) -> 
 
 
 def lower_bound(value: float, error: float = 0.0) -> str:
-    """Round a number less its error down to the digits that a table shows: still a lower bound."""
+    """Format a number minus its error, rounded down to the digits of a table, so that it is a lower bound."""
     return _rounded(value - error, ROUND_FLOOR)
 
 
 def upper_bound(value: float, error: float = 0.0) -> str:
-    """Round a number plus its error up to the digits that a table shows: still an upper bound."""
+    """Format a number plus its error, rounded up to the digits of a table, so that it is an upper bound."""
     return _rounded(value + error, ROUND_CEILING)
 
 

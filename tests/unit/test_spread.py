@@ -227,7 +227,7 @@ def test_command(tmp_path, finished):
         (["--spread", "beam.thickness=+-1 kg"], "a unit of mass where length is wanted"),
         (["--spread", "beam.thicknes=+-1%"], "did you mean beam.thickness?"),
         (["--spread", "beam.thickness"], "give KEY=TOLERANCE"),
-        (["--spread", "beam.thickness=+-1%", "--spread", "thickness=+-2%"], "has a spread already"),
+        (["--spread", "beam.thickness=+-1%", "--spread", "thickness=+-2%"], "has a tolerance already"),
         (["--spread", "beam.thickness=+-1%", "--vary", "beam.thickness=0.1:0.2:3 mm"], "is varied, or has"),
         (["--spread", "beam.thickness=+-1%", "--vary", "beam.width=5:9:3 mm"], "--vary does not go with"),
         (["--spread", "beam.thickness=+-1%", "--together"], "--together does not go with"),

@@ -29,7 +29,7 @@ def warnings_of(result: Any, tolerance: float | None = None, without: str = "") 
 
 
 def _words_of(result: Any) -> Callable[[Part], str]:
-    """Return a function that formats a part of a text: in the result's units, input names as in files."""
+    """Return a function that words a part of a text with the result's units, and input names as in files."""
     units = result.display_units if isinstance(result, Result) else SI_UNITS
     own: Callable[[Part], str | None] = getattr(result, "in_own_words", lambda part: None)
     return lambda part: in_files(own(part) or in_terms(part, units))
@@ -80,7 +80,7 @@ def _first_clause(sentence: str) -> str:
 
 
 def critical_label(point: bd.CriticalPoint) -> str:
-    """Return the label of a critical speed in a picture."""
+    """Return the label of a critical speed in a picture; it tells if the speed is that of a straight beam."""
     return "critical speed, were the beam straight:" if of_kind(point.warnings, OUTSIDE) else "critical speed"
 
 

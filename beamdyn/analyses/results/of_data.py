@@ -181,7 +181,7 @@ def design_tables(result: bd.FoundDesign) -> Group:
     def said(value: float, unit: str) -> str:
         return "-" if np.isnan(value) else in_files(say_number(value, unit), result.display_units)
 
-    title = f"{'Found' if result.found else 'The nearest'}, {result.solves} solves"
+    title = f"{'Design found' if result.found else 'Nearest design'}, {result.solves} solves"
     rows = [
         (
             in_files(target.says, result.display_units),

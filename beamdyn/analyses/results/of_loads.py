@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from beamdyn.loads.transient_loads import EquivalentRange, TransientLoads
 
 _MOST_DIGITS = 7
-_DIGITS_EXPECTED = 3  # significant digits: the loads are statistical
+_DIGITS_EXPECTED = 3  # significant digits of expected loads, which are statistical estimates
 _CLASSES = 10  # number of classes into which load cycles are divided by range
 _QUANTITIES = "strain", "stress", "force", "moment"  # quantities in the order of tables
 
@@ -116,9 +116,9 @@ def _largest_lines(result: Any, **window: float) -> list[Text]:
 
 
 def _lines(result: bd.SpanLoads, say: Callable[[str], str]) -> list[Text]:
-    """Return a sentence on each computed quantity, and on the data that strains need if these are missing.
+    """Return a sentence ``say(quantity)`` for each computed quantity.
 
-    ``say(quantity)`` makes the sentence.
+    If the strains are unknown, a further sentence says which data of the beam they need.
     """
     known = [name for name in _QUANTITIES if np.isfinite(result.values(name)).any()]
     lacking = [] if "strain" in known else [f"No strains: {REMEDIES['strain']}."]
@@ -256,13 +256,16 @@ def loads_csv(result: bd.SpanLoads) -> Columns:
 
 
 def _places(result: bd.SpanLoads, times: int = 1) -> tuple[Column, Column]:
-    """Make columns of position and side of each station, repeated `times` times."""
+    """Make columns of each station's position and side (inboard or outboard of a jump), `times` times."""
     sides = np.where(result.inboard, "inboard", "outboard")
     return Column("position", np.tile(result.x, times), "m"), Column("side", np.tile(sides, times))
 
 
 def _of_components(result: bd.SpanLoads, part: str, values: np.ndarray) -> Iterator[Column]:
-    """Yield columns of values (rows, components of all quantities); their names begin with `part`."""
+    """Yield a file column for each component of each load; its name is `part` and the component's name.
+
+    `values` has the shape (rows, components).
+    """
     named = ((name, unit) for name, unit in UNITS.items() for name in _components(result, name))
     for (name, unit), column in zip(named, values.T, strict=True):
         yield Column(f"{part}{name}", column, unit)

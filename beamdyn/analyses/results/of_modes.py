@@ -29,8 +29,8 @@ Cell: TypeAlias = "str | Text"  # type of a table cell: plain or styled text
 _MOST_ROWS = 16
 _ROUNDING = 1e-9  # relative model error below which it counts as a rounding error
 _CRITICAL_DIGITS = 12  # largest number of digits of a critical speed
-_FEW = 4  # largest number of modes over speed for which frequencies are shown with all digits
-# Largest number of digits of a frequency over speed: for few modes, and for more modes.
+_FEW = 4  # largest number of modes in a table over speed whose frequencies have `_DIGITS` digits
+# Largest number of digits of a frequency in a table over speed: of up to `_FEW` modes, and of more modes.
 _DIGITS, _DIGITS_OF_MANY = 10, 7
 _AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the bending direction, and across
 
@@ -39,12 +39,12 @@ _AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the bending directio
 
 
 def said_of_model(result: Result, sentence: str) -> str:
-    """Return a sentence on the model of a result, with inputs named as in files and the result's units."""
+    """Reword a sentence on the model of a result: with input names as in files, and the result's units."""
     return in_files(sentence, result.display_units)
 
 
 def said_over_speeds(result: bd.Locus | bd.SteadyResponse | bd.Sweep, what: str = "") -> str:
-    """Return the sentence below a table over speeds: the changes by neglected effects, where largest.
+    """Return the sentence below a table over speeds: the largest changes that neglected effects may cause.
 
     `what` is a noun for several values at one speed, such as "mode"; empty if there is one value.
     """
@@ -67,7 +67,7 @@ def rows_worth_showing(status: np.ndarray, *more: np.ndarray) -> np.ndarray:
 
 
 def selection_note(shown: np.ndarray, every: np.ndarray) -> str:
-    """Return the note on how many of `every` speed a table shows (`shown`); empty if it shows all."""
+    """Return the note on how many of all speeds (`every`) a table has rows for; empty if for all."""
     few = len(shown) < len(every)
     return f" ({len(shown)} of {len(every)} speeds; CSV and JSON have all)" if few else ""
 
@@ -223,7 +223,7 @@ def locus_csv(result: bd.Locus) -> Columns:
 
 
 def critical_answer(result: bd.CriticalPoint) -> Group:
-    """Make sentences on the critical speed, or how far there is certainly none, and on neglected effects."""
+    """Make sentences on the critical speed, or the speed below which there is none, and neglected effects."""
     unit = result.display_units.speed_unit()
     if math.isinf(result.none_below) and math.isinf(result.speed):
         said = Text(f"no critical speed: {in_files(result.reason)}")

@@ -51,7 +51,7 @@ def transient_table(run: bd.Transient, window: tuple[float, float] | None = None
     modes = f"modal truncation error {size}"
     if math.isnan(run.time_error):
         errors = (
-            "The time-integration error is not estimated: this integrator bounds errors of single steps. "
+            "The time-integration error is not estimated: this integrator only limits single-step errors. "
             f"Estimated {modes}."
         )
     else:
@@ -108,7 +108,10 @@ def transient_csv(run: bd.Transient) -> Columns:
 
 
 def _table_over_speeds(result: bd.SteadyResponse | bd.Sweep, columns: Columns, peaks_at: np.ndarray) -> Group:
-    """Make a table of columns at some speeds and at all peaks, which the status column marks."""
+    """Make a table with rows at some speeds and at the peaks, whose indices are `peaks_at`.
+
+    The added column of statuses marks the peaks.
+    """
     shown, high = of_modes.rows_worth_showing(np.array(result.status), peaks_at), {*peaks_at.tolist()}
     states = [f"{result.status[s]}, peak" if s in high else str(result.status[s]) for s in shown.tolist()]
     status = Column("status", states)
@@ -188,7 +191,7 @@ def sweep_peaks(result: bd.Sweep) -> np.ndarray:
 
 
 def peaks(values: np.ndarray, prominence: float) -> np.ndarray:
-    """Find local maxima of at least a given prominence: the height above the higher neighbouring valley.
+    """Find indices of local maxima with a prominence (height above the higher valley beside it) or more.
 
     Values that are not finite are ignored.
     """
@@ -256,7 +259,10 @@ def _road_columns(result: bd.Harvest) -> tuple[Column, ...]:
 
 
 def _harvest_tables(result: bd.Harvest) -> Group:
-    """Make tables of steady motion, and of a random road, at some speeds including the one of most power."""
+    """Make tables of harvesting in steady motion and on a random road, at some speeds and at the best one.
+
+    The best speed is the one with the largest power.
+    """
     shown = of_modes.rows_worth_showing(result.status, np.flatnonzero(result.speeds == result.best[0]))
     tables = [harvest_columns(result)]
     if result.road is not None:
@@ -268,7 +274,7 @@ def _harvest_tables(result: bd.Harvest) -> Group:
 
 
 def _panels(result: bd.Harvest) -> Figure:
-    """Draw the results of energy harvesting in panels."""
+    """Draw the results of energy harvesting over speed, in several panels."""
     return figure_of(result.plot_panels, result.picture_size())
 
 

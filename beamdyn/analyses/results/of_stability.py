@@ -25,7 +25,7 @@ _SI: Mapping[str, tuple[str, float]] = {}
 def multiplier_columns(result: bd.FloquetMultipliers) -> Columns:
     """Make columns with one row per Floquet multiplier: magnitude, angle, error and Krein sign.
 
-    Without multipliers, make columns of the growth rate and its error.
+    For a result without multipliers, make columns of the growth rate and its error.
     """
     if not len(result.multipliers):
         rate, error = np.array([result.growth_rate]), np.array([result.growth_rate_error])
@@ -123,7 +123,7 @@ def limit_columns(result: bd.StabilityLimits) -> Columns:
         Column("multiplier_real", np.real(result.multiplier), form=".6f"),
         Column("multiplier_imaginary", np.imag(result.multiplier), form=".6f"),
         title=f"Limits of stability, {result.provenance.method}",
-        note=f"Curves by the multiplier that leaves the unit circle: {kinds}." if kinds else "No limit.",
+        note=f"Kinds of curves, by the multiplier on the unit circle: {kinds}." if kinds else "No limit.",
     )
 
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _MOST_ROWS = 30  # largest number of rows in the table of a study
 _DIGITS = 10  # largest number of digits of a speed or frequency
-# Largest number of digits of a derivative, and of results side by side in a table.
+# Largest number of digits of a derivative; largest number of results side by side in a table.
 _DIGITS_OF_DERIVATIVES, _BESIDE = 7, 4
 _RPM = 30 / np.pi  # revolutions per minute in one rad/s
 # Relative distance of a frequency from its upper bound, below which it counts as close to the bound.
@@ -109,7 +109,7 @@ def _without(value: np.ndarray, status: np.ndarray) -> list[str | None]:
 
 
 def _plain_name(label: str) -> str:
-    """Return a label as part of a column heading: mode number, or combination frequency in words."""
+    """Return a label as part of a column heading: "1" for "mode 1", with words for plus and minus signs."""
     label = label.replace("+", " plus ").replace("-", " minus ")
     return name_in_heads(label.removeprefix("mode "))
 
@@ -117,7 +117,7 @@ def _plain_name(label: str) -> str:
 def sensitivities_table(result: bd.Sensitivities) -> Group:
     """Make a table of input values, derivatives of each result, and relative changes."""
     values = [f"{a} {v:.6g} {result.unit}" for a, v in zip(result.answers, result.value, strict=True)]
-    said = f"{'; '.join(values)}. Derivatives: in {result.unit} over the SI unit of the input."
+    said = f"{'; '.join(values)}. Derivatives: in {result.unit} per SI unit of the input."
     numbers = np.array([each.value for each in result.inputs])[:, None]
     with np.errstate(invalid="ignore"):
         error = result.error * np.abs(numbers / result.value)
@@ -285,7 +285,7 @@ def _margins(result: bd.Campbell) -> Iterator[Columns]:
             Column("frequency", attributes(found, "frequency"), "Hz"),
             Column("nearest line", attributes(found, "line.name")),
             Column("margin", (), cells=sizes),
-            title="Margins: frequency of the nearest line over the natural frequency, less one",
+            title="Margins: frequency of the nearest line divided by the natural frequency, minus 1",
         )
 
 

@@ -22,9 +22,10 @@ _CELL = 2.5  # side of a grid cell [pt]
 _APART = 2.0  # least distance between two texts [pt]
 _GAP = 5.0  # distance from an anchor to its label [pt]
 FAR = 18.0  # distance of a label from its anchor above which a line (leader) connects them [pt]
-# Distances of the candidates from the anchor, beyond the smallest distance [pt].
+# Distances of candidate places from the anchor, in addition to the smallest distance [pt].
 _STEPS = np.array([0.0, 5.0, 12.0, 22.0, 36.0, 54.0, 78.0, 110.0, 150.0])
 _TURNS = 12  # number of directions around an anchor
+# Costs of a candidate place, in [pt] of additional distance from the anchor:
 _TURNED = 9.0  # cost of a direction at right angles to the preferred one [pt]
 _NEXT = 5.0  # additional cost of each further anchor of a label, from the second one on [pt]
 _COVERED = 120.0  # cost of a candidate place that lines of the drawing cover completely [pt]
@@ -257,7 +258,10 @@ class _Chosen:
         self._boxes[label] = self._leaders[label] = np.nan
 
     def in_the_way(self, label: int, count: int | None) -> np.ndarray:
-        """Return which labels collide with each of a label's first `count` (None: all) candidates (rows)."""
+        """Return whether each candidate of a label collides with each label: shape (candidates, labels).
+
+        The candidates are the first `count`; all if it is None.
+        """
         of = self._of[label]
         boxes = of.boxes[:count]
         found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)
@@ -272,7 +276,10 @@ class _Chosen:
         return found
 
     def best(self, label: int, before: int | None = None) -> int | None:
-        """Return the index of a label's cheapest free candidate (of the first `before` or all), or None."""
+        """Return the index of a label's cheapest candidate that collides with no label; None without one.
+
+        Only the first `before` candidates count; all if it is None.
+        """
         for count in (_FIRST, None) if before is None else (before,):
             free = ~self.in_the_way(label, count).any(axis=1)
             if free.any():

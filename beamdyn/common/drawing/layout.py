@@ -28,7 +28,7 @@ _BAR = 0.22  # length of the longest scale bar, as a fraction of the frame's wid
 _SMALL_DISC = 30.0  # largest radius of a disc whose label stands beside the disc, not on it [pt]
 # Points, relative to a movable point, that labels must not cover: the page shows a handle of 16 px there.
 _HANDLE = np.vstack([np.zeros((1, 2)), arc((0, 0), 4.5, 0, 2 * np.pi, 9)])
-# Points of a ground symbol that labels must not cover, in units of half its width and of its height.
+# Points (x, y) of a ground symbol that labels must not cover; unit of x: half its width, of y: its height.
 _MARKS = np.array([(0.0, 0.0), (0.0, -2 / 17), (0.0, 0.5), (-0.7, 0.9), (0.0, 0.9), (0.7, 0.9)])
 _PADDING = (4.0, 1.0)  # added to width and height of a text [pt], as hinting and slant widen letters
 

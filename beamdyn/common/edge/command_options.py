@@ -43,7 +43,7 @@ _SUFFIXES = {
 
 
 class Files:
-    """Output files: base class of the options that commands of all kinds share."""
+    """Base class of the options for output files, which all commands share."""
 
     plot: Path | None = None
     json: Path | None = None
@@ -266,10 +266,13 @@ class VaryOptions:
         """Raise an error for options that have no effect unless an input is varied."""
         for name in ("together", "workers", "store"):
             if not self.vary and getattr(self, name) != getattr(NOTHING_VARIED, name):
-                raise ValueError(f"--{name} goes with {OPTION}: without it there is one design only")
+                raise ValueError(f"--{name} goes with {OPTION}: without {OPTION} there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
-        """Return the object that computes all designs in processes, and stores results; see `TaskRunner`."""
+        """Return a `TaskRunner` that computes designs in `workers` processes, and stores results in `store`.
+
+        `kind` names the kind of results; `versions` are those of the programs that affect their last bits.
+        """
         from beamdyn.common.parallel.tasks import TaskRunner
 
         return TaskRunner(self.workers, None, self.store, kind, versions, progress)
@@ -301,9 +304,9 @@ class SpreadOptions:
         "NAME=0.19 mm to 0.21 mm" (all values as likely), or "NAME=sd 1%" (normal). Give the option once for
         each input. Names are those of the file.
     samples : int
-        Number n of designs in each of 2 + d random samples of d inputs: a power of two, from 128.
+        Number n of designs in each of 2 + d random samples of d inputs: a power of two, at least 128.
     seed : int
-        Whole number from which the random designs follow.
+        Seed of the random designs, a whole number; the same seed gives the same designs.
     """
 
     spread: Annotated[

@@ -341,7 +341,7 @@ class MadeSection(CoreSection):
     """A table that describes an object of the package; its keys follow from the arguments of the class."""
 
     made: ClassVar[type]
-    key_of: ClassVar[Mapping[str, str]]  # key of each argument; "tip[0]" and "tip[1]" for a pair
+    key_of: ClassVar[Mapping[str, str]]  # key of each argument; a pair `tip` has two: "tip[0]" and "tip[1]"
 
     @property
     def given(self) -> dict[str, Any]:

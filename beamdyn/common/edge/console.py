@@ -127,7 +127,7 @@ def _bar(pace: Pace) -> Progress:
 
     counted = TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[count]}")
     screen = Console(stderr=True, force_terminal=True)
-    # rich must not redirect standard output, or it would print redirected output on the terminal.
+    # Otherwise rich would print on the terminal what the user redirects from standard output to a file.
     return Progress(
         *counted, TimeElapsedColumn(), Remaining(),
         console=screen, transient=True, redirect_stdout=False, redirect_stderr=False,
@@ -146,7 +146,8 @@ def at_work(what: str) -> Iterator[Callable[[int, int], None]]:
     Yields
     ------
     callable
-        To be called with the numbers of steps that are done and of all; without calls the line has no bar.
+        Function to call with the number of finished steps and the number of all steps; the line has a bar
+        only if it is called.
     """
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda done, total: None
@@ -218,9 +219,10 @@ def spell_output(stream: TextIOWrapper) -> None:
 
 
 class Terminal(Console):
-    """A console for standard output whose column widths allow for characters that the terminal cannot show.
+    """A console for standard output that replaces characters that the terminal cannot show.
 
-    If the reader of a pipe closes it, as `head` does, the command goes on without output.
+    It does so before the widths of columns are computed.  If the reader of a pipe closes it, as `head` does,
+    the command goes on without output.
     """
 
     def render_str(self, text: str, **options: Any) -> Text:  # pyright: ignore[reportIncompatibleMethodOverride]
@@ -311,7 +313,7 @@ class FittedTable(Table):
     def _part(self, places: Sequence[int], needed: Sequence[int], numbered: bool) -> Table:
         """Make a table from the columns with indices `places`, with row numbers in front if `numbered`.
 
-        `needed` contains the width of every column, to which headings are broken.
+        `needed` contains the width of each column of the table; headings are broken to fit into it.
         """
         made = Table(box=self.box, padding=self.padding)
         if numbered:
@@ -418,7 +420,7 @@ def _values(column: Column) -> Sequence[str | Text]:
 
 
 def comparison_table(title: str, rows: Iterable[Comparison]) -> Group:
-    """Make a table of comparisons, with a rule where the first two words of `Comparison.what` change."""
+    """Make a table of comparisons; a line separates rows whose `what` differs in its first two words."""
     cells: list[list[str]] = []
     topics: list[list[str]] = []
     for row in rows:

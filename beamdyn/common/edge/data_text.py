@@ -51,7 +51,7 @@ class DataText:
         return ConfigError(str(self.path), [f"line {line}: {sentence}"])
 
     def lacking(self, sentence: str) -> ConfigError:
-        """Return an error that the file ends too early; `sentence` names the content that it lacks."""
+        """Return an error that the file ends before some content, which `sentence` says was expected."""
         return self.refusal(len(self.lines), f"the file ends here, {sentence}")
 
     def is_comment(self, line: int) -> bool:
@@ -182,7 +182,7 @@ class NamedValue:
 
 
 def plain_name(name: str) -> str:
-    """Return a name in lower case without brackets, colons, underscores and blanks, in which files differ."""
+    """Return a name in lower case, without brackets, colons, underscores and blanks: files differ in them."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 
@@ -243,7 +243,7 @@ def check_all_there(text: DataText, found: Mapping[str, NamedValue], names: Mapp
             raise text.refusal(found[key].line, f"expected a value before {found[key].name}, found none")
     if missing := [shown for key, shown in names.items() if key not in found]:
         some = ", ".join(missing[:4]) + (f" and {len(missing) - 4} more" if len(missing) > 4 else "")
-        raise text.lacking(f"without a line for {some}; expected a value followed by this name")
+        raise text.lacking(f"and it has no line for {some}; expected a value followed by this name")
 
 
 def named_number(text: DataText, named: NamedValue) -> float:

@@ -57,8 +57,8 @@ def add_completion(app: App) -> None:
     def completion(shell: Shell, /) -> None:
         """Print the script by which a shell completes commands and options at the Tab key.
 
-        Where it goes: ~/.local/share/bash-completion/completions (bash), a folder of fpath (zsh) or
-        ~/.config/fish/completions (fish).
+        Save it as a file in ~/.local/share/bash-completion/completions (bash), in a folder of fpath (zsh) or
+        in ~/.config/fish/completions (fish).
 
         Parameters
         ----------
@@ -133,7 +133,7 @@ def _terminated_as_interrupted() -> Iterator[None]:
 
 @contextmanager
 def _as_sentences(name: str) -> Iterator[None]:
-    """In this context, print warnings of the packages as plain sentences, without file and line."""
+    """In this context, print each `UserWarning` as a plain sentence, without file and line number."""
     usual = warnings.showwarning
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
@@ -144,7 +144,7 @@ def _as_sentences(name: str) -> Iterator[None]:
 
     with warnings.catch_warnings():
         warnings.simplefilter("default", UserWarning)  # shown whatever warning filters the user has set
-        # The warnings stored in a result are printed by the command, not here.
+        # Not shown here: the command prints these warnings, which its result stores.
         warnings.simplefilter("ignore", OutsideLinearTheory)
         warnings.showwarning = show
         yield

@@ -51,7 +51,7 @@ def say_mistake(app: App, error: CycloptsError, given: Sequence[str]) -> str:
     elif isinstance(error, UnusedCliTokensError) and error.unused_tokens:
         said = _say_too_many(error.unused_tokens, given)
     elif isinstance(error, CoercionError) and error.target_type in _KINDS and error.token and not error.msg:
-        # The typed value is also searched in `given`: the oldest supported cyclopts omits that of a flag.
+        # The error lacks the value typed for a flag in the oldest supported cyclopts: `given` has it.
         option = error.token.keyword
         joined = next((text.partition("=")[2] for text in given if text.startswith(f"{option}=")), "")
         wanted = _KINDS[error.target_type]

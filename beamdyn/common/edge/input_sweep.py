@@ -124,7 +124,7 @@ def chosen(outputs: Sequence[Output], names: str, option: str = "--what") -> lis
     Parameters
     ----------
     outputs : sequence of Output
-        All outputs of the design.
+        All outputs that can be chosen.
     names : str
         The names.
     option : str

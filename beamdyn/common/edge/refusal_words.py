@@ -29,7 +29,7 @@ _ELSEWHERE = {
     "t_end": "--window",
 }
 _PHYSICS = "physics."
-_USUAL = {"rad": "1 deg"}  # text with the unit that messages use for a number that was not typed, by SI unit
+_USUAL = {"rad": "1 deg"}  # by SI unit: a text with the unit of messages about values that were not typed
 
 
 def is_no_answer(error: Exception) -> bool:

@@ -141,7 +141,7 @@ def _shown(ax: Axes) -> tuple[object, ...]:
 
 
 def _only(figure: Figure, parts: Sequence[Artist]) -> str:
-    """Return some parts of a figure and of its axes as SVG, without its end tag."""
+    """Return some parts of a figure and of its axes as SVG, without the end tag of the SVG."""
     kept = {*parts, *figure.axes}
     found = (part for whole in (figure, *figure.axes) for part in whole.get_children())
     others = [part for part in found if part not in kept and part.get_visible()]
@@ -237,7 +237,10 @@ def _rows(part: object) -> int:
 
 
 def _width(part: object) -> float:
-    """Return the width of a table or the widest in a group, in letters; else 0.  Headings may be broken."""
+    """Return the width in letters of a table, or of the widest table of a group; 0 for other objects.
+
+    Headings count as broken into one line for each word.
+    """
     if isinstance(part, Group):
         return max(map(_width, part.renderables), default=0.0)
     columns = part.columns if isinstance(part, Table) else ()

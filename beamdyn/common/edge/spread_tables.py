@@ -50,7 +50,7 @@ def headline(result: Spread, answer: int) -> str:
     parts.append(f"standard deviation {_number(*_deviation(result, k))}{unit}")
     names = result.matters_most(k) if len(result.inputs) > 1 else ()
     if len(names) > 1:
-        alike = f"{result.samples} samples do not show which of them more"
+        alike = f"{result.samples} samples do not show which of them matters most"
         parts.append(f"{' and '.join(names)} matter most, but {alike}")
     elif names:
         row = int(result.indices.total[:, k].argmax())

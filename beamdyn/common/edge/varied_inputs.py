@@ -176,7 +176,7 @@ def find_input(inputs: Sequence[Input], key: str, words: str) -> Input:
     if not matches:
         raise ValueError(f"{words}: {unknown(key, [i.path for i in numbers], [i.name for i in numbers])}")
     if choices := matches[0].choices:
-        says = f"it is a choice ({', '.join(map(str, choices))}), no number: give each a file; numbers are"
+        says = f"it is a choice ({', '.join(map(str, choices))}), no number: use a file for each; numbers are"
         raise ValueError(f"{words}: {matches[0].path}: {says} {', '.join(i.path for i in numbers)}")
     return matches[0]
 
@@ -239,7 +239,7 @@ def parse_spreads(
             raise ValueError(f'{words}: give KEY=TOLERANCE, such as "{key or "thickness"}=+-2%"')
         entry = find_input(inputs, key, words)
         if entry.path in made:
-            raise ValueError(f"{words}: {entry.path} has a spread already; give each input once")
+            raise ValueError(f"{words}: {entry.path} has a tolerance already; give each input once")
         value, unit = nominal(entry)
 
         def in_si(number: str, written: str, unit: str = unit) -> float:

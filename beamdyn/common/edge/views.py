@@ -93,7 +93,7 @@ def rows_of(result: Result) -> Rows:
 
 
 def picture_of(result: Result) -> Callable[[], Figure] | None:
-    """Return a function that draws a result: of its `View`, else by its method `plot`; else None."""
+    """Return a function that draws a result by its `View`, else by its method `plot`; None without both."""
     made = view_of(result).figure
     if made is not None:
         return lambda: made(result)

@@ -221,7 +221,7 @@ def _replaced(whole: Any, new: Any) -> Any:
 
 
 def field_of(made: type, key: str) -> str:
-    """Return the name of the dataclass field that has a key in files; for other classes, the key itself."""
+    """Return the name of the dataclass field whose key in files is `key`; for other classes, `key` itself."""
     return _fields_by_key(made).get(key, key)
 
 
@@ -339,7 +339,7 @@ class Designs:
 
 
 def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
-    """Convert columns of values, by name, to designs: a mapping of values by name for each."""
+    """Convert arrays of input values, by name, to one mapping from names to values for each design."""
     return [
         dict(zip(columns, row, strict=True))
         for row in zip(*(c.tolist() for c in columns.values()), strict=True)
@@ -347,7 +347,7 @@ def rows_of(columns: dict[str, np.ndarray]) -> list[dict[str, float]]:
 
 
 def check_designs(designs: Designs, most: int = MOST_DESIGNS, option: str = "vary") -> None:
-    """Refuse unknown combinations, repeated inputs, unequal lengths in a zip, and too many designs.
+    """Refuse an unknown `combine`, repeated inputs, inputs of unequal length in a zip, and too many designs.
 
     Parameters
     ----------

@@ -226,7 +226,7 @@ class TaskRunner:
             raise InvalidValue("store", self.store, "the name is empty", 'give a folder, such as "store"')
         if self.progress is not None:
             parts = self.interrupted.parts
-            function("progress", self.progress, f"it takes the number of finished {parts} and of all")
+            function("progress", self.progress, f"it gets the numbers of finished and of all {parts}")
 
     def open_store(self) -> Store | None:
         """Return the store, and open it at the first call; None if there is no store."""

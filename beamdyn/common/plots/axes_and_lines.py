@@ -102,7 +102,10 @@ def _is_isolated(y: np.ndarray) -> np.ndarray:
 
 
 def draw_by_plane(ax: Axes, x: np.ndarray, y: np.ndarray, kinds: np.ndarray, style: dict[str, Any]) -> None:
-    """Draw a line whose dashes are `MOTION_DASHES[kinds[i]]` from sample i on, without gaps in between."""
+    """Draw a line whose dashes change with the main motion: `MOTION_DASHES[kinds[i]]` after sample i.
+
+    The pieces with different dashes are joined without gaps.
+    """
     starts, isolated = [0, *(np.flatnonzero(np.diff(kinds)) + 1).tolist()], _is_isolated(y)
     for start, stop in zip(starts, [*(s + 1 for s in starts[1:]), len(x)], strict=True):
         piece, dashes = slice(start, stop), MOTION_DASHES[kinds[start]]

@@ -86,7 +86,8 @@ def plot_campbell(
     lines : mapping of str to float
         Excitation lines: their frequencies as multiples of the speed.
     crossings : mapping of str to sequence of (float, float)
-        Speed [rad/s] and natural frequency [Hz] of crossings of each kind.
+        Speed [rad/s] and natural frequency [Hz] of each crossing, by a text for the legend; crossings with
+        different texts get different markers.
     ax : Axes, optional
         Axes to draw on; new axes if not given.
     unit : {"rad/s", "rpm", "deg/s"}
@@ -94,8 +95,8 @@ def plot_campbell(
     rated : float, optional
         Rated speed [rad/s], marked by a line.
     operating : (float, float), optional
-        Operating range [rad/s], which is shaded; the first kind of crossings must then be those within the
-        range.
+        Operating range [rad/s], which is shaded; the first entry of `crossings` must then contain the
+        crossings within this range.
 
     Returns
     -------

@@ -19,7 +19,7 @@ _GREY = "0.5"
 _FEW = 4  # largest number of cases drawn as single lines along the span; of more cases a band is drawn
 _MARKERS = "osD^vXP"
 _SAME = 1e-6  # difference of two curves that is too small to see, as a fraction of the largest value
-_FEWEST_BARS = 3  # least number of bars for which a bar chart has space
+_FEWEST_BARS = 3  # a bar chart with fewer names leaves empty space, so that the bars are not wider
 
 
 # Parameter sweeps ------------------------------------------------------------------------------------

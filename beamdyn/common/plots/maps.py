@@ -131,7 +131,7 @@ _TICKS = 6  # largest number of intervals between ticks below a map: their numbe
 _FEW = 40  # largest number of values of an input for which the points of a curve have markers
 # The hatched region without results ends where the fraction of missing results, smoothed, is 1/2.
 _SMOOTHED = 1.0  # standard deviation of the Gaussian that smooths the fraction [grid steps]
-_APART = 0.02  # least distance of the fraction from 1/2 at grid points, so that the end lies between them
+_APART = 0.02  # least distance of the fraction from 1/2 at grid points, so that the region ends between them
 _SAME = 1e-9  # relative range of the values below which they count as equal: no contour lines are drawn
 # Fraction of the smallest, and of the largest, values that do not influence the contour levels.
 _RARE = 0.04
@@ -376,7 +376,11 @@ def _nearest_outside(region: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def levels_of(known: np.ndarray) -> np.ndarray:
-    """Choose round contour levels: at 1, 2, 5 times powers of ten over 1.5 decades, else at equal steps."""
+    """Choose round contour levels for the finite values `known`: at equal steps, or at powers of ten.
+
+    If positive values span more than 1.5 decades, levels are at powers of ten, and at 2 and 5 times these if
+    few powers are in the range.
+    """
     from matplotlib.ticker import MaxNLocator
 
     # Contour levels disregard a few values that may lie far away from all others.

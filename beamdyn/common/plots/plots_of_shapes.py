@@ -184,9 +184,9 @@ def plot_bent_beam(
     Parameters
     ----------
     along : ndarray, shape (n,)
-        Coordinates of n points along the beam at rest, over its length.
+        Coordinates of n points along the direction of the beam at rest, divided by its length.
     across : ndarray, shape (2, n)
-        Coordinates across it, over its length, in two directions.
+        Coordinates of the points in two directions across it, divided by the length.
     directions : sequence of str, length 1 or 2
         The directions that are drawn, in words; if there are two, they are named in the legend.
     ax : Axes, optional

@@ -73,7 +73,11 @@ def plot_stability_chart(
 
 
 def _limit(first: np.ndarray, second: np.ndarray, grows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the line halfway between points where the motion grows and others; nan separates pieces."""
+    """Return x and y of the line halfway between grid points where the motion grows and others.
+
+    `first` (A,) and `second` (B,) are the coordinates of the grid points; `grows` has the shape (A, B).
+    Pieces of the line are separated by nan.
+    """
     from contourpy import contour_generator
 
     if min(grows.shape) < 2:

@@ -280,7 +280,7 @@ def columns_of_rows(names: Iterable[tuple[str, str] | str], rows: Iterable[Seque
 def column_named(
     name: str, values: np.ndarray | Sequence[Any], unit: str, number: object = "", **shown: Any
 ) -> Column:
-    """Make a column with the name of its quantity; for the unit 1/s its heading ends with "1_per_s"."""
+    """Make a column; for a unit such as 1/s, the name gets "_1", so that its heading ends with "_1_per_s"."""
     return Column(f"{name}_1" if unit.startswith("1") else name, values, unit, number, **shown)
 
 

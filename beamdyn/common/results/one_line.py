@@ -24,7 +24,7 @@ class OneLine:
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
-        if "__repr__" not in vars(cls):  # a dataclass does not replace a method defined in its class
+        if "__repr__" not in vars(cls):  # the decorator `dataclass` keeps a `__repr__` that the class defines
             cls.__repr__ = OneLine.__repr__
 
     def headline(self) -> Iterable[str]:
@@ -56,7 +56,7 @@ def given_fields(thing: Any) -> Iterator[str]:
         value = getattr(thing, each.name)
         try:
             usual = each.default is not dataclasses.MISSING and bool(value == each.default)
-        except ValueError:  # arrays have no single truth value
+        except ValueError:  # the comparison of arrays has no single truth value
             usual = False
         if each.repr and not usual:
             yield f"{each.name}={brief(value)}"

@@ -168,10 +168,10 @@ def _marks(ax: Axes) -> Iterator[Artist]:
 
 
 def _tell_apart(ax: Axes, before: list[Artist], text: str) -> None:
-    """Put a label before the legend entries of the marks not in `before`, and change colours used before.
+    """Put a label before the legend entries of new marks (not in `before`), and give them other colours.
 
-    The colours are shifted in `COLOURS` by the number of used colours; or replaced by unused colours if the
-    list is too short for the shift.
+    The colours change only if older marks (`before`) have one of them.  They are shifted in `COLOURS` by the
+    number of older marks' colours; or replaced by unused colours if the list is too short for the shift.
     """
     new = [mark for mark in _marks(ax) if not any(mark is old for old in before)]
     taken, own = _colours(before), _colours(new)
@@ -208,13 +208,16 @@ def _place(mark: Artist) -> int | None:
     colour = None if given is None else given()
     if colour is not None and not isinstance(colour, str):
         colour = colour[0] if len(colour) and not isinstance(colour[0], float) else colour
-    # Without black, in which elements other than curves are drawn.
+    # Black, the last colour, does not count: elements other than curves are drawn in it.
     known = {to_hex(each): place for place, each in enumerate(COLOURS[:-1])}
     return None if colour is None or not len(colour) else known.get(to_hex(colour))
 
 
 def _recolour(mark: Artist, moves: Mapping[int, int]) -> None:
-    """Change a mark's colour as `moves` maps indices of `COLOURS`; an index beyond it also dashes a line."""
+    """Change a mark's colour: `moves` maps the index of each colour in `COLOURS` to a new index.
+
+    A new index beyond the end of `COLOURS` counts on from the first colour, and makes a line dashed.
+    """
     place, line = _place(mark), hasattr(mark, "get_linestyle")
     if place is None or place not in moves:
         return

@@ -189,7 +189,7 @@ def load(path: str | Path) -> Any:
     True
     """
     file = as_path("path", path)
-    remedy = "compute the result again; any JSON reader gets its numbers"
+    remedy = "compute the result again; any program that reads JSON can read its numbers"
     try:
         text = file.read_bytes()
     except OSError as error:

@@ -180,7 +180,7 @@ def said_in(units: Any, text: str) -> str:
     return worded(text, lambda part: part.in_units(units))
 
 
-_REMEDY = '; Scene(..., physics="auto") adds what matters'
+_REMEDY = '; Scene(..., physics="auto") adds the effects that matter'
 
 Arguments = ParamSpec("Arguments")
 Answer = TypeVar("Answer")

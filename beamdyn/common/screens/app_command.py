@@ -51,8 +51,8 @@ def add_command(app: App, program: Callable[[], Program], port: int, about: str)
         port
             Port to serve on.
         host
-            Address or name to serve on; only this computer can reach the usual one. Requests to other
-            names are refused.
+            Address or name to serve on; only this computer can reach the default address. Requests to
+            other names are refused.
         browser
             Open the browser.
         """

@@ -82,7 +82,7 @@ class ChartBoard:
         self._made: list[_ShownChart] = []
         self._charts: list[Chart] = []  # charts that the page shows
         self._shown: list[dict[str, Any]] = []  # options of the shown charts, without the cursor
-        self._sums: list[int] = []  # checksums of each chart's options
+        self._sums: list[int] = []  # checksum of each chart's options
         self._column: Any = ui.element("div").classes("w-full charts")
         self._column.props["data-words"] = words
         self._how: Any = ui.label(_HOW).classes("status")
@@ -97,7 +97,7 @@ class ChartBoard:
         return options_of(replace(chart, cursor=None))
 
     def _sum_of(self, i: int, options: dict[str, Any], last: dict[str, Any]) -> int:
-        """Return the checksum of chart i's options, stored already if they are the `last` options."""
+        """Return the checksum of chart i's options; it is stored already if they are the object `last`."""
         return self._sums[i] if options is last else crc32(json.dumps(options).encode())
 
     def _elements(self) -> Iterator[Any]:
@@ -128,7 +128,7 @@ class ChartBoard:
 
 
 def _saved_by_script(options: dict[str, Any]) -> dict[str, Any]:
-    """Return chart options with which the script of the page saves the chart."""
+    """Return the options with a save button that calls the function `saveChart` of the page's script."""
     toolbox = options["toolbox"]
     feature = toolbox["feature"]
     saving = feature["mySave"] | {":onclick": "saveChart"}

@@ -118,7 +118,11 @@ class _TableRow(NamedTuple):
 
 
 def _naming(here: Sequence[_TableRow], there: Sequence[_TableRow]) -> Callable[[_TableRow], str]:
-    """Choose how rows of two tables are named: by texts if unique, else a common first number, else count."""
+    """Return the function that names the rows of two tables: by their texts, if these are unique.
+
+    Otherwise rows are named by their first number, if the tables have several of these in common, or else by
+    texts and row number.
+    """
     if all(len({row.words for row in rows}) == len(rows) for rows in (here, there)):
         return lambda row: row.words or row.counted
     common = {row.place for row in here} & {row.place for row in there}

@@ -13,9 +13,9 @@ from nicegui import background_tasks, ui
 
 from beamdyn.common.screens.processes import TakesTooLong
 
-SOON = 0.15  # time after which the page shows "computing" [s]; visible within 0.3 s
+SOON = 0.15  # time after which the page shows "computing" [s], so that users see it within 0.3 s
 _LOG = logging.getLogger(__name__)
-_PATIENCE = 2.0  # time after which an outdated computation is ended [s]; a new process takes 1 s
+_PATIENCE = 2.0  # age at which a computation is ended if a newer one waits [s]; a new process takes 1 s
 
 
 class LatestComputation:

@@ -21,7 +21,7 @@ _STILL = 1.0  # time for which each picture is shown if the user prefers reduced
 _STILLS = 4  # number of pictures of an animation if the user prefers reduced motion
 _PATIENCE = 3.0  # time without painting after which a page counts as hidden [s]
 
-# The script waits until the changes sent to the browser are painted: to the next frame, and its end.
+# This script waits until the browser has painted the changes sent to it: until the end of the next frame.
 _PAINTED = """return new Promise(done => requestAnimationFrame(() => setTimeout(() => {{
   const seen = getHtmlElement({id})?.offsetParent;
   done(!seen ? "away" : matchMedia("(prefers-reduced-motion: reduce)").matches ? "still" : "moving");

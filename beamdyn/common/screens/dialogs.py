@@ -151,13 +151,13 @@ class LinkDialog:
             self._link: Any = ui.input("link").classes("w-full").props("readonly outlined dense")
             self._said: Any = ui.label().classes("mistake").props('role="alert"')
             ui.label(
-                "The address holds the whole design. It opens wherever this program runs at the same address."
+                "The link contains the whole design. It works wherever this program runs at the same address."
             ).classes("status")
             with ui.row():
                 self._copy: Any = ui.button("Copy").props("no-caps")
                 ui.button("Close", on_click=self._dialog.close).props("flat no-caps")
         field = json.dumps(f"#{self._link.html_id}")
-        # This id belongs to the input field, or to an element that contains it.
+        # The element with the id `field` is the input field itself, or contains it.
         take = f"document.querySelector({field})"
         self._copy.on(
             "click",
