@@ -108,7 +108,10 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Find the contact angle of a point drawn in the direction of (x, y); at rest, also the clearance."""
+    """Find the contact angle with which the contact is drawn in the direction of (x, y).
+
+    At rest, also find the clearance with which the contact is drawn at (x, y).
+    """
 
     def residual(angle: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, contact_angle=float(angle))
@@ -125,7 +128,7 @@ def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> 
 
 
 def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Iterate x + residual(x) until the residual is negligible, or `residual` refuses x by a ValueError."""
+    """Iterate x + residual(x) until the residual is negligible, or until `residual` raises ValueError."""
     for _ in range(_ITERATIONS):
         try:
             step = residual(start)

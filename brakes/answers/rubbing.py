@@ -185,5 +185,5 @@ def stops_tables(fade: Fade) -> Iterator[RenderableType]:
 
 
 def _change(other: float, torque: float) -> str:
-    """State a torque and its relative change."""
+    """State the torque `other` and its relative change from `torque`; "locks" if it is not finite."""
     return change(other, torque, "N m", "locks")

@@ -284,7 +284,8 @@ def _integrated(energy: float, factor: float, force: Callable[[float], float]) -
     """Compute the distances [m] at which the brake has absorbed energies E from 0 to `energy` [J].
 
     The pad force F = ``force(s)`` [N] depends on the distance s, and the braking force is `factor` times F.
-    The function integrates ds/dE = 1/(factor F(s)). If F vanishes before, the last distance is inf.
+    The function integrates ds/dE = 1/(factor F(s)). The last distance is inf if F falls to zero before the
+    brake has absorbed all of the energy.
     """
     from scipy.integrate import solve_ivp
 

@@ -251,4 +251,4 @@ class Cone(Ring):
         if not sticks.any():
             return ()
         least = float(np.min(np.broadcast_to(self.taper, sticks.shape)[sticks]))
-        return (f"the cone sticks from friction {least:.4g} on, its taper: pull it out of the cup",)
+        return (f"the cone sticks from friction {least:.4g} on, tan of its angle: pull it out of the cup",)

@@ -99,7 +99,7 @@ class Sliding(Machine):
         Described(
             "rad",
             "psi",
-            "angle of the abutment's force above the actuating force",
+            "angle of the abutment's force above the direction of the actuating force",
             least=-np.pi / 4,
             most=np.pi / 4,
         ),

@@ -30,7 +30,7 @@ from brakes.planar.system import (
 
 _BALANCED = 1e-9  # largest residual of equilibrium that counts as zero, over the largest force
 _UNDETERMINED = 1e-7  # component of a self-stress above which a reaction counts as undetermined
-_BESIDE = 1e-2  # part of its length by which a mechanism is moved off a toggle, to test if it is held there
+_BESIDE = 1e-2  # step off a toggle position, over the mechanism's length, to test if it is held there
 _WEAK = 1e-5  # relative singular value below which the result counts as ill-conditioned
 
 
@@ -72,8 +72,9 @@ class Equilibrium:
     open_or_slack : tuple of str
         Contacts that would have to pull and cables that would have to push, at any of the positions.
     virtual_work : ndarray
-        Largest work of loads and friction in a free motion, over the largest force, without the reactions;
-        with mobility 0, the sum of forces or of moments that the ground receives, whichever is larger.
+        Largest virtual work of loads and friction in a free motion, over the largest force.  With mobility 0
+        there is no free motion: it is then the sum of all forces, or of all moments, on the ground, whichever
+        is larger, over the largest force.  In equilibrium it is zero up to rounding.
     residual : ndarray
         Largest residual force or moment on a body, over the largest force.
     error : ndarray
@@ -377,7 +378,7 @@ def _verdict(
             sentence = Words(
                 "too near a toggle position to decide whether the loads are in balance: ",
                 how,
-                f" there, which only forces beyond all bounds could stop (smallest singular value "
+                f" there, which only infinitely large forces could stop (smallest singular value "
                 f"{margin:.1g}, at least {least:.1g} is needed); draw it further from that position, or give "
                 "no magnitude to a load that moves it",
             )

@@ -182,7 +182,7 @@ def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
 
 
 def inputs_of(name: str) -> dict[str, np.ndarray]:
-    """Return the values of a table's varied inputs by published keys; the input of the rows is first."""
+    """Return the values of a table's varied inputs by key in the published file, the rows' input first."""
     entries = load("yoo_1997")[name].items()
     varied = {key: entry for key, entry in entries if key != "padded" and "value" in entry}
     return {key: np.array(entry["value"]) for key, entry in varied.items()}

@@ -75,7 +75,10 @@ class Vehicle:
         refuse(late, "cg_behind_front", a, "m", bound, limit=self.wheelbase, other="wheelbase")
 
     def arm(self, axle: Axle) -> Numbers:
-        """Return the distance [m] of the centre of gravity from the other axle, proportional to the load."""
+        """Return the distance [m] of the centre of gravity from the other axle.
+
+        The load of `axle` at rest on level ground is proportional to this distance.
+        """
         return self.wheelbase - self.cg_behind_front if axle == "front" else self.cg_behind_front
 
     def load_share(self, axle: Axle, ratio: Numbers, leading: Axle) -> Numbers:

@@ -238,11 +238,11 @@ _SENTENCES = {
     "stops": "the truck stops",
     "stops in the rise time": "the truck stops while the brake force is still rising",
     "never stops": "the locked front wheels hold less than the slope pulls: the truck never stops; "
-    "less slope, more friction, or another load",
+    "take less slope, more friction, or another load",
     "brakes too weak": "the brakes hold less than the slope pulls, though the road would hold more: the "
     "truck never stops; press harder, or take stronger brakes",
     "too near to decide": "does not stop: the slope is too near the steepest on which locked front wheels "
-    "hold the truck; less slope, more friction, or another load",
+    "hold the truck; take less slope, more friction, or another load",
 }
 
 
