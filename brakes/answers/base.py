@@ -425,7 +425,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return [name for name, field in self.model.model_fields.items() if not field.is_required()]
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Describe the inputs in the design's tables: numbers, and choices, which a sweep refuses by name."""
+        """Describe inputs in the design's tables: numbers, and choices, which sweeps refuse by a message."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
         return [each for each in there if each.quantity.unit or each.quantity.symbol or each.choices]
 

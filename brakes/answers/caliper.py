@@ -170,7 +170,10 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @cached_property
     def stop(self) -> StoppingDistance | None:
-        """The stop with the mean pad force at the end of the stroke; None if the file has no stop."""
+        """The stop with the mean pad force at the end of the stroke.
+
+        It is None if the file has no stop, or if the pad forces are unknown.
+        """
         if self.design.stop is None or self._unsolved:
             return None
         return self.design.stop.with_force(float(self.run.pad_force[-1].mean()))

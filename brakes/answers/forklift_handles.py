@@ -13,8 +13,8 @@ from beamdyn.common.screens.screen_parts import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
-_TOLERANCE = 1e-7  # tolerance for the position at rest of a moved point [m, rad]
-_ITERATIONS = 30  # largest number of iterations for the position at rest of a moved point
+_TOLERANCE = 1e-7  # tolerance of the iteration for the position at rest of a dragged point [m, rad]
+_ITERATIONS = 30  # largest number of iterations for the position at rest of a dragged point
 _GROUND = 1.9  # end of the drawn ground, in units of the wheelbase
 _REAR_AXLE = 0.75  # height of the drawn rear axle, in units of the front wheel's radius
 Values = Callable[[float, float], dict[str, float]]

@@ -227,7 +227,7 @@ class MechanismAnswer(planar.PlanarAnswer):
         return drawings.mechanism_figure(drawn, self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
-        """Make the drawing of the mechanism at a fraction of its stroke (0 to 1), and as drawn (in grey)."""
+        """Draw the mechanism at a fraction of its stroke (0 to 1), and in grey the position of its file."""
         return ((self._drawing(self._index_at(place)),),)
 
     def charts(self, place: float) -> Sequence[Chart]:

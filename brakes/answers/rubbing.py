@@ -97,7 +97,7 @@ class RubbingAnswer(Answer):
         return [*([] if self.fade is None else stops_tables(self.fade)), self._doubt()]
 
     def _doubt(self) -> str:
-        """State the torque at this force with other friction, other pressure laws, and in reverse."""
+        """State how the torque changes at the same force by friction, by the pressure law, and in reverse."""
         torque, mu, back = self.result.torque, self.result.friction, not self.result.reverse
         ends = ", ".join(
             _change(self.again(friction=part * mu).torque, torque) for part in (1 - PART, 1 + PART)

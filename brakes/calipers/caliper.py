@@ -111,7 +111,7 @@ class Caliper:
         except OppositeTravelError:
             raise OppositeTravelError(
                 f"load {self.cable!r} opens the pads: turn the directions of {self.pads[0]!r} and "
-                f"{self.pads[1]!r} away from the rim, or the cable"
+                f"{self.pads[1]!r} away from the rim, or reverse the cable"
             ) from None
 
     def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:

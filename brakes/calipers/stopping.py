@@ -130,7 +130,7 @@ class StoppingDistance(Result):
     pad_limit : float
         Force on each pad at the lower of these two limits [N], which is not exceeded.
     limited_by : {"brake", "grip", "pitching over"}
-        Limit of the deceleration.
+        What limits the deceleration.
     status : {"stops", "does not stop"}
         Whether the vehicle stops.
     message : str

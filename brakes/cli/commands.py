@@ -425,7 +425,7 @@ def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
     Parameters
     ----------
     output
-        Folder for the pictures; it is made in the current one if needed, and its pictures are replaced.
+        Folder for the pictures; it is created if it does not exist, and pictures in it are replaced.
     """
     from brakes.reproduce import compare_all
 

@@ -85,7 +85,7 @@ _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least
 
 
 class RunInput(Section):
-    """Table [run] of a file: the stroke, the finger's force, and further quantities to compute."""
+    """Table [run] of a file: the stroke, the finger's force, friction, and wear of the pads."""
 
     finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
     driver: Annotated[str | None, _DRIVER] = None

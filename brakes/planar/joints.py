@@ -292,7 +292,7 @@ class Contact(OnTwoBodies, Joint):
         if self.centre is None and turned > _TURNS:
             yield (
                 f"{self.title} has a straight face, which turns with {self.other!r} by {turned:.3g} deg: "
-                "right for a flat face; of a round one, such as a drum, give the centre, not the normal"
+                "right for a flat face; for a round one, such as a drum, give the centre, not the normal"
             )
 
     def shapes(self) -> tuple[Shape, ...]:

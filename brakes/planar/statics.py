@@ -423,7 +423,7 @@ class Action(NamedTuple):
     """A force or a couple that a joint or load exerts on a body.
 
     name : str
-        Name of the joint or load; "friction of" and the name for its friction.
+        Name of the joint or load; for friction, "friction of" and its name in `Mechanism.friction`.
     at : ndarray, shape (2,)
         Point of application [m]; nan for a couple.
     force : ndarray, shape (2,)

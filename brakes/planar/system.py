@@ -25,7 +25,7 @@ from brakes.planar.rows import GROUND, FrictionLaw, Point, Pose, Row, Totals
 # Rank, null spaces and least-squares solutions of many small matrices at once, by singular values --------
 
 
-RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0; toggle positions are solved to 1e-8
+RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0: above the error of toggle positions, 1e-8
 
 
 class Decomposition(NamedTuple):

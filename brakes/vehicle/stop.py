@@ -186,7 +186,7 @@ class Stop(Result):
 
     @property
     def limited_by(self) -> Any:
-        """The limit of the braking force: "road" where the front wheels lock, else "brake"."""
+        """What limits the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
         return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
 
