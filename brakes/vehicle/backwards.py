@@ -39,7 +39,7 @@ class Needed(Result):
     Attributes
     ----------
     value : ndarray
-        The unique value that gives the output, in its SI unit; nan if there is none.
+        The unique value that gives the output [SI unit]; nan if there is none.
     reason : str or ndarray of str
         Why there is no value; empty if there is one.
 
