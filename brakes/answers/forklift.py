@@ -144,7 +144,7 @@ class ForkliftAnswer(Answer):
         return (*stop, *fade, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return a sentence on each design without a result, by index; `count` is the number of designs."""
+        """Return a sentence on each design without a result, by its index; `count` counts all designs."""
         fade = None if self.pedal is None else self.pedal.fade
         hot = {} if fade is None else fade.messages_of_cases(count)
         stop = {} if self.stop is None else self.stop.messages_of_cases(count)

@@ -70,7 +70,10 @@ class RubbingAnswer(Answer):
         return (*locks, *(() if self.fade is None else self.fade.refusals))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return a sentence on each design that locks or does not stop, by index; `count` is their number."""
+        """Return a sentence on each design that locks or does not stop, by the index of the design.
+
+        `count` is the number of all designs.
+        """
         hot = {} if self.fade is None else self.fade.messages_of_cases(count)
         return hot | self.result.messages_of_locked(count)
 

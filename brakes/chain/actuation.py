@@ -150,7 +150,7 @@ def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
     References
     ----------
-    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
+    Standard formulas of a lever and of the volume of a fluid, as in `actuate`, solved in closed form.
 
     Examples
     --------
@@ -187,7 +187,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
     References
     ----------
-    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
+    Standard formulas of a lever and of the volume of a fluid, as in `actuate`, solved in closed form.
 
     Examples
     --------

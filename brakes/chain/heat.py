@@ -157,7 +157,7 @@ def heat_of_stop(
 
     References
     ----------
-    Standard (work of a force along its path), as in the docstring of the module.
+    Standard: work of a force along its path, as in the docstring of the module.
 
     Examples
     --------
@@ -221,7 +221,7 @@ def fade_of_stops(
 
     References
     ----------
-    Standard (conservation of energy): the docstring of the module, and of `repeat_stops`.
+    Standard: conservation of energy; see the docstrings of the module and of `repeat_stops`.
 
     Examples
     --------

@@ -81,7 +81,8 @@ def find(
 
     References
     ----------
-    Standard (intermediate values on pieces that rise or fall); roots by Alefeld, Potra and Shi (1995).
+    Standard: a continuous answer takes each value between those at the ends of a piece; roots by Alefeld,
+    Potra and Shi (1995).
 
     Examples
     --------
@@ -144,7 +145,7 @@ def find_whole(
 
     References
     ----------
-    Standard (trial of each number).
+    Standard: each number is tried.
 
     Examples
     --------

@@ -229,7 +229,7 @@ class Fade(Result):
         return tuple(f"{words} (cases: {np.sum(self.status == status)})" for status, words in found)
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Return by case index which stop has no result, and why; `count` is the number of cases."""
+        """Return which stop has no result, and why, by index of the case; `count` counts all cases."""
         status, stops = (np.broadcast_to(x, (count,)) for x in (self.status, self.duty.stops))
         ended = np.isfinite(self.end).reshape(len(self.end), -1)
         first = np.broadcast_to(1 + ended.argmin(axis=0), (count,))
@@ -289,7 +289,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
 
     References
     ----------
-    Standard (conservation of energy), as in the docstring of the module.
+    Standard: conservation of energy, as in the docstring of the module.
 
     Examples
     --------

@@ -258,7 +258,7 @@ def solve_brake(
 
     References
     ----------
-    Standard: force and torque of each lining at one largest pressure, here 1 Pa; see its class.
+    Standard: force and torque of each lining are proportional to its largest pressure; see the brake's class.
 
     Examples
     --------

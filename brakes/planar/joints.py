@@ -68,7 +68,7 @@ class Pin(OnTwoBodies, Joint):
 
     References
     ----------
-    Standard: two equal points; friction circle.
+    Standard: the two points coincide; friction circle of a pin.
 
     Examples
     --------

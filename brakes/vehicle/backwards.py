@@ -102,7 +102,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
 
     References
     ----------
-    Standard (moments), solved for the friction, as in the docstring of the module.
+    Standard: equilibrium of moments, solved for the friction, as in the docstring of the module.
 
     Examples
     --------

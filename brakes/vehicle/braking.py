@@ -112,7 +112,7 @@ def braking_limits(
 
     References
     ----------
-    Standard (moments about where the tyres stand): the docstring of `brakes.vehicle.axles`.
+    Standard: moments about the points where the tyres stand; see the docstring of `brakes.vehicle.axles`.
 
     Examples
     --------

@@ -172,7 +172,7 @@ def hold(
 
     References
     ----------
-    Standard (moments about where the tyres stand): the docstring of `brakes.vehicle.axles`.
+    Standard: moments about the points where the tyres stand; see the docstring of `brakes.vehicle.axles`.
 
     Examples
     --------

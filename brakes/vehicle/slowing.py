@@ -199,7 +199,8 @@ def slow_down(
 
     References
     ----------
-    Standard (moments about where the tyres stand, and constant forces): the docstring of the module.
+    Standard: moments about the points where the tyres stand, and motion under constant forces; see the
+    docstring of the module.
 
     Examples
     --------

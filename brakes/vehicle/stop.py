@@ -226,7 +226,10 @@ class Stop(Result):
         return _SENTENCES[str(self.status)]
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Return the message of each case that does not stop, by its index; `count` is their number."""
+        """Return the message of each case that does not stop, by its index.
+
+        `count` is the number of all cases.
+        """
         each = np.broadcast_to(self.status, (count,)).tolist()
         return {i: _SENTENCES[status] for i, status in enumerate(each) if not status.startswith("stops")}
 
