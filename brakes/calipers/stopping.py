@@ -58,7 +58,7 @@ class Stance:
     Examples
     --------
     >>> stance = calipers.Stance(cg_height=1.1, cg_behind_front=0.6)
-    >>> round(stance.pitch_limit(lift=1.0), 2)  # m/s2, g 0.6/1.1
+    >>> round(stance.pitch_limit(lift=1.0), 2)  # m/s2: g 0.6 / 1.1
     5.35
     """
 

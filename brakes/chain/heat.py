@@ -104,7 +104,7 @@ class Heat(Result):
     ... )
     >>> conditions = vehicle.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
     >>> heat = chain.heat_of_stop(vehicle.stop(truck, conditions))
-    >>> round(float(heat.drum_energy / heat.energy), 3)  # the wheels lock: the tyres take the rest
+    >>> round(float(heat.drum_energy / heat.energy), 3)  # the wheels lock: the tyres take more
     0.131
     """
 

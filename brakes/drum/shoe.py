@@ -62,8 +62,8 @@ class Shoe:
     Raises
     ------
     ValueError
-        If a length is not positive, the pin not below the centre or far from the drum, the force not
-        above the pin, or the arc empty, over the pin, or past the pressure's second zero.
+        If a length is not positive, the pin is not below the centre or is far from the drum, the force is not
+        above the pin, or the lining's arc is empty, overlaps the pin, or passes the pressure's second zero.
 
     References
     ----------

@@ -391,7 +391,7 @@ def equilibrium_equations(
     >>> pins = (forces.A_vector, forces.B_vector, forces.C_vector, forces.D_vector)
     >>> unknowns = np.array([*np.concatenate(pins), forces.Q, forces.P_L])
     >>> left = forklift.equilibrium_equations(forces.levers, 11e3, 11650.0, unknowns)
-    >>> bool((abs(left) < 1e-6).all())  # in balance: N, N m
+    >>> bool((abs(left) < 1e-6).all())  # residuals [N, N m]: in balance
     True
     """
     r, alpha1, alpha2, gamma = levers.drum_radius, levers.alpha1, levers.alpha2, levers.gamma

@@ -66,7 +66,7 @@ class Levers(HasLevers):
     Raises
     ------
     ValueError
-        If a length is not positive, or P_L and Q, or P_T and Q, more than 90 degrees apart.
+        If a length is not positive, or if P_L and Q, or P_T and Q, are more than 90 degrees apart.
 
     References
     ----------

@@ -65,7 +65,7 @@ class Sliding(Machine):
     Raises
     ------
     ValueError
-        If a value is out of bounds, the lining is empty, or the force not above the abutment.
+        If a value is out of bounds, the lining is empty, or the force is not above the abutment.
 
     References
     ----------

@@ -63,7 +63,7 @@ class FrictionalEquilibrium:
 def solve_with_friction(
     mechanism: Mechanism, driver: str, position: Position | None = None
 ) -> FrictionalEquilibrium:
-    """Compute reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
+    """Compute reactions and unknown magnitudes of loads while the mechanism begins to move, or moves slowly.
 
     A pivot of radius r resists with the couple r mu/sqrt(1 + mu^2) |reaction|, a contact or slot with the
     force mu |reaction|, each against the relative velocity of the motion that the driver causes.  The

@@ -68,7 +68,7 @@ class Equilibrium:
     movable, loose : tuple of str
         Bodies that the joints let move, and bodies with uncontrolled motion, at any of the positions.
     undetermined : tuple of str
-        Reactions and amplitudes that equilibrium does not determine.
+        Joints and loads whose forces equilibrium does not determine.
     open_or_slack : tuple of str
         Contacts that would have to pull and cables that would have to push, at any of the positions.
     virtual_work : ndarray
@@ -157,10 +157,11 @@ class Balance(NamedTuple):
 
 
 def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium:
-    """Compute reactions and unknown amplitudes at one position or many.
+    """Compute the reactions of joints and the unknown magnitudes of loads, at one position or many.
 
-    The equations [J^T G][lambda; s] = -Q, 3 rows per body, are solved by singular value decomposition: J is
-    the gradient of the joints, G that of the loads of unknown amplitude, Q are the known loads.
+    The equations [J^T G][lambda; s] = -Q, 3 rows per body, are solved by singular value decomposition. J is
+    the gradient of the joints' constraints and lambda their multipliers, G the gradient of the coordinates of
+    loads with unknown magnitudes s, and Q the known loads.
 
     Parameters
     ----------
@@ -285,7 +286,7 @@ def collect_result(
 def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
     """Collect forces by name, from the Lagrange multipliers (positions, rows) in scaled units.
 
-    They are reactions and force magnitudes of joints, amplitudes of loads, and friction forces [N, N m].
+    They are reactions and force magnitudes of joints, magnitudes of loads, and friction forces [N, N m].
     """
     system, physical = mechanism.system, multiplier * mechanism.system.unit
     reactions, magnitudes = {}, {}
@@ -415,7 +416,7 @@ def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: in
 def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
     """Combine pairs of status and message, in order of decreasing severity, to one status and message."""
     if not found:
-        return "determined", "every reaction and amplitude is determined"
+        return "determined", "every reaction and load is determined"
     return found[0][0], joined("; ", (sentence for _, sentence in found))
 
 

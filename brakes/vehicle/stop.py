@@ -149,7 +149,7 @@ class Stop(Result):
     ... )
     >>> steep = np.radians(27.0)
     >>> conditions = vehicle.StopConditions(steep, 20 / 3.6, 0.7, reaction_time=0.5, rise_time=0.3)
-    >>> bool(vehicle.stop(truck, conditions).stops)  # on 27 deg it does not
+    >>> bool(vehicle.stop(truck, conditions).stops)  # not on a slope of 27 deg
     False
     """
 
