@@ -171,7 +171,7 @@ def _branch(
 def _jams_when_disturbed(
     system: System, balance: Balance, start: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Find joints with friction that press with no force, and positions at which a disturbance jams them.
+    """Find joints with friction but no pressing force, and positions where a disturbance jams the mechanism.
 
     If loads act exactly in line, a joint may press with no force, whose direction is then meaningless.
     There can be two equilibria: without pressure, and jammed.  The jammed one needs a disturbance, however
