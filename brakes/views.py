@@ -25,7 +25,10 @@ def _answer_tables(answer: Answer) -> Group:
 
 
 def _solution_tables(found: Solutions) -> Group:
-    """Tabulate the solutions of an inverse question, with the ranges that show that there are no others."""
+    """Tabulate the inputs that give a wanted result, and the ranges over which the result rises or falls.
+
+    These ranges show that no other input gives the wanted result.
+    """
     heads = [f"{name} [{unit}]" if unit else name for name, unit in found.named]
     columns = (f"{found.input} from", "to", found.output, "from", "to")
     ends = ([f"{p.start:.6g}", f"{p.end:.6g}", *p.shown_ends] for p in found.pieces)

@@ -19,7 +19,7 @@ def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = 
     Parameters
     ----------
     output
-        Folder for the pictures; it is made in the current one if needed, and its pictures are replaced.
+        Folder for the pictures; it is created if it does not exist, and pictures in it are replaced.
     tables
         Compare with the tables of beams and blades of other sources too; takes some twenty seconds.
     """

@@ -59,7 +59,10 @@ class Answer(Result, ABC):
     provenance: Provenance | None = field(default=None, kw_only=True)
 
     def headline(self) -> Iterator[str]:
-        """Yield the results' summaries, the error, and the number of refusals; see `Result.headline`."""
+        """Yield the parts of the answer's one-line summary; see `Result.headline`.
+
+        They are the summaries of its results, the error, and the number of `refusals`, if there are any.
+        """
         parts = (getattr(self, each.name) for each in fields(self))
         said = (line for part in parts if isinstance(part, Result) for line in part.headline())
         yield from dict.fromkeys((*said, error_at_most(self.error)))
@@ -81,7 +84,10 @@ class Answer(Result, ABC):
         return ()
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return the reason why a design has no result, by its index; `count` is the number of designs."""
+        """Return the reasons why designs have no result, one sentence each, by the index of the design.
+
+        `count` is the number of all designs.
+        """
         return {}
 
     def loadable(self) -> Result | None:
@@ -126,7 +132,7 @@ class Answer(Result, ABC):
         return ()
 
     def branches(self) -> Mapping[str, Answer]:
-        """Return copies of this answer by name, each of which draws another of several solutions.
+        """Return copies of this answer, each of which draws a different one of several solutions, by name.
 
         An answer with only one solution returns an empty mapping.
         """
@@ -419,7 +425,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
         return [name for name, field in self.model.model_fields.items() if not field.is_required()]
 
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
-        """Describe the inputs in the design's tables: numbers, and choices, which a sweep refuses by name."""
+        """Describe inputs in the design's tables: numbers, and choices, which sweeps refuse by a message."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
         return [each for each in there if each.quantity.unit or each.quantity.symbol or each.choices]
 
@@ -449,7 +455,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
 
 
 class TableBrakeType(BrakeType[FileModel]):
-    """Base of types of brakes whose mechanics takes one design: a sweep solves the designs one by one."""
+    """Base of types of brakes whose mechanics takes one design at a time: a sweep solves them in turn."""
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:
         """Solve the requested designs one by one; results are nan where the model has none."""

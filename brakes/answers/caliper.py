@@ -139,7 +139,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         pulls = (self.run.pad_force <= 0).any(axis=1)
         if not pulls.any():
             return self.run.message
-        return Words(f"from {1e3 * self.run.cable[pulls.argmax()]:.6g} mm of cable on: ", self.run.message)
+        return Words(f"from cable travel {1e3 * self.run.cable[pulls.argmax()]:.6g} mm: ", self.run.message)
 
     @property
     def refusals(self) -> Sequence[str]:
@@ -170,7 +170,10 @@ class CaliperAnswer(planar.PlanarAnswer):
 
     @cached_property
     def stop(self) -> StoppingDistance | None:
-        """The stop with the mean pad force at the end of the stroke; None if the file has no stop."""
+        """The stop with the mean pad force at the end of the stroke.
+
+        It is None if the file has no stop, or if the pad forces are unknown.
+        """
         if self.design.stop is None or self._unsolved:
             return None
         return self.design.stop.with_force(float(self.run.pad_force[-1].mean()))
@@ -209,8 +212,8 @@ class CaliperAnswer(planar.PlanarAnswer):
             named = f", {join_names(own)} with their own" if own else ""
             shown.append(
                 f"Pivots with friction {f.coefficient:g}{named}: {100 * f.squeeze:.2f} % of the force "
-                "arrives when squeezed; when let go the cable still has "
-                f"{100 * f.release:.2f} % of its tension."
+                "reaches the pads when squeezed; when released, the tension of the cable is "
+                f"{100 * f.release:.2f} % of the tension without friction."
             )
             shown.append(f"For the same forces of the pads: {self._tensions(f)}.")
         if (w := self.wear) is not None:
@@ -304,7 +307,7 @@ class CaliperAnswer(planar.PlanarAnswer):
         return float(np.interp(place, (0.0, 1.0), self.run.cable[[0, -1]]))
 
     def _caption(self, cable: float) -> str:
-        """State the cable tensions with friction if `cable` is the end of the stroke; else an empty text."""
+        """State the cable tensions with friction if the travel `cable` is the last of the stroke; else ""."""
         return self._tensions(self.friction) if self.friction and cable == self.run.cable[-1] else ""
 
 
@@ -342,7 +345,7 @@ class MechanismType(TableBrakeType[CaliperInput | MechanismInput]):
         """Read the caliper or the mechanism that tables describe."""
         mistakes = {}
         for part in PARTS:
-            if isinstance(text := tables.get(part), str):  # a text in place of a list of tables is a mistake
+            if isinstance(text := tables.get(part), str):  # the user typed a text, not a list of tables
                 form = 'give a list of tables, e.g. [{ name = "A", body = "arm", at = "B" }]'
                 try:
                     tomllib.loads(f"parts = {text}")

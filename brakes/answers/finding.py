@@ -151,7 +151,7 @@ def _amount(text: str, unit: str) -> float:
     if unit == "deg":
         return SlopeQuantity("rad").convert(text) / SCALES["deg"]
     if unit == "K" and not text.endswith("K"):
-        raise InvalidValue("", text, "it is a difference from the temperature of the surroundings, in K")
+        raise InvalidValue("", text, "give a difference from the temperature of the surroundings, in K")
     return Quantity(unit).convert(text if unit else float(text))
 
 

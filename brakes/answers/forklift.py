@@ -39,7 +39,7 @@ from brakes.forklift import InternalForces, Kinematics, ShoeMotion, Stop, follow
 
 _VEHICLE = (
     *take_fields(Stop, "distance"),
-    take("pulled_distance", "... if the slope pulls while the brake force rises", "m"),
+    take("pulled_distance", "stopping distance if the slope also pulls while the brake force rises", "m"),
     *take_fields(
         Stop,
         "time acceleration torque_per_brake reaction_distance rise_distance braking_distance "
@@ -76,7 +76,7 @@ _FORCES = (
 
 
 _OF_TYRES = "stop.friction", "tyres on the road: Stopping distance"
-_OF_LININGS = "forces.lining_friction", "the linings, which limit it,: Stopping distance"
+_OF_LININGS = "forces.lining_friction", "the linings (the brakes limit the stop): Stopping distance"
 
 
 def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> tuple[Output, ...]:
@@ -92,14 +92,14 @@ def stage_outputs(stages: Sequence[StageName], pedal: Sequence[Output] = ()) -> 
 
 @dataclass(frozen=True)
 class ForkliftAnswer(Answer):
-    """Results of a forklift's brakes, for some of the stages stop, kinematics and forces.
+    """Results of a forklift's brakes, for some of the stages vehicle (the stop), kinematics and forces.
 
     Attributes
     ----------
     design : ForkliftInput
         The design that the file describes.
     stages : tuple of str
-        The stages that are shown.
+        The stages that are shown, some of "vehicle", "kinematics" and "forces".
     stop : Stop, optional
         Stop of the vehicle, if this stage is shown.
     motion : ShoeMotion, optional
@@ -144,7 +144,7 @@ class ForkliftAnswer(Answer):
         return (*stop, *fade, *([self.forces.message] if self.forces is not None and unbalanced else []))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return a sentence on each design without a result, by index; `count` is the number of designs."""
+        """Return a sentence on each design without a result, by its index; `count` counts all designs."""
         fade = None if self.pedal is None else self.pedal.fade
         hot = {} if fade is None else fade.messages_of_cases(count)
         stop = {} if self.stop is None else self.stop.messages_of_cases(count)
@@ -183,7 +183,7 @@ class ForkliftAnswer(Answer):
                 ]
                 for event, stage in zip(done.events, (done.right, done.left, done.drum), strict=True)
             ]
-            least = "least rank and least relative singular value of the constraints during the motion"
+            least = "smallest rank and relative singular value of the constraints' Jacobian during the motion"
             heads_of_events = ("stage", "event", "rank", "smallest singular value")
             tables.append(outputs_table("Kinematics of one brake", _MOTION, self.motion))
             tables.append(table(f"Events ({least})", heads_of_events, rows, (0, 1)))
@@ -201,8 +201,8 @@ class ForkliftAnswer(Answer):
             tables.append(table(title, heads, rows, (0, 2)))
             if limit == "road" and self.design.forces is not None:
                 tables.append(
-                    f"The linings stick to their drums: of their friction "
-                    f"{self.design.forces.lining_friction:.4g} the locked wheels use {f.lining_friction:.4g}."
+                    "The linings stick to their drums: the locked wheels use "
+                    f"{f.lining_friction:.4g} of their friction {self.design.forces.lining_friction:.4g}."
                 )
         return tables
 
@@ -319,7 +319,7 @@ def solve_stages(design: ForkliftInput, stages: Sequence[StageName] = ()) -> For
         geometry = motion or (design.levers and design.levers.core)
         if "forces" in shown and design.forces and geometry is not None:
             piston_force, friction = design.forces.piston_force, design.forces.lining_friction
-            if chained is not None:  # friction is a result: locked wheels may need less than the linings have
+            if chained is not None:  # solve for the friction: locked wheels may not use all of the linings'
                 piston_force, friction = chained.braked.actuation.actuator_force, None
             with of_file({"friction": "lining_friction"}):
                 forces = internal_forces(

@@ -13,8 +13,8 @@ from beamdyn.common.screens.screen_parts import Handle
 from brakes.drawings.duo_servo import moved
 from brakes.forklift import DuoServo, ShoeMotion, Stop
 
-_TOLERANCE = 1e-7  # tolerance for the position at rest of a moved point [m, rad]
-_ITERATIONS = 30  # largest number of iterations for the position at rest of a moved point
+_TOLERANCE = 1e-7  # tolerance of the iteration for the position at rest of a dragged point [m, rad]
+_ITERATIONS = 30  # largest number of iterations for the position at rest of a dragged point
 _GROUND = 1.9  # end of the drawn ground, in units of the wheelbase
 _REAR_AXLE = 0.75  # height of the drawn rear axle, in units of the front wheel's radius
 Values = Callable[[float, float], dict[str, float]]
@@ -108,7 +108,10 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Find the contact angle of a point drawn in the direction of (x, y); at rest, also the clearance."""
+    """Find the contact angle with which the contact is drawn in the direction of (x, y).
+
+    At rest, also find the clearance with which the contact is drawn at (x, y).
+    """
 
     def residual(angle: np.ndarray) -> np.ndarray:
         other = _move_changed(motion.geometry, motion, contact_angle=float(angle))
@@ -125,7 +128,7 @@ def _move_changed(geometry: DuoServo, motion: ShoeMotion, **changed: object) -> 
 
 
 def _iterate(start: np.ndarray, residual: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-    """Iterate x + residual(x) until the residual is negligible, or `residual` refuses x by a ValueError."""
+    """Iterate x + residual(x) until the residual is negligible, or until `residual` raises ValueError."""
     for _ in range(_ITERATIONS):
         try:
             step = residual(start)

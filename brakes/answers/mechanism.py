@@ -65,7 +65,7 @@ def mechanism_outputs(mechanism: Mechanism) -> tuple[Output, ...]:
 
 @dataclass(frozen=True)
 class MechanismAnswer(planar.PlanarAnswer):
-    """Equilibrium of a mechanism as drawn, and over the stroke of a driver where one is named.
+    """Equilibrium of a mechanism as drawn in its file, and over the stroke of a driver if one is named.
 
     Attributes
     ----------
@@ -142,7 +142,7 @@ class MechanismAnswer(planar.PlanarAnswer):
     def warnings(self) -> Sequence[str]:
         """Warnings of statics, toggle positions, and directions in which friction holds the mechanism."""
         said = [*self.last.warnings]
-        if self.motion is not None:  # add warnings of toggles and doubtful inputs of joints
+        if self.motion is not None:  # add warnings of toggle positions and of doubtful inputs of joints
             said += [toggle.message for toggle in self.motion.toggles]
             angles = {body: self.motion.position.angle(body) for body in self._mechanism.bodies}
             said += [words for joint in self._mechanism.joints for words in joint.doubts(angles)]
@@ -220,14 +220,14 @@ class MechanismAnswer(planar.PlanarAnswer):
         Parameters
         ----------
         place : float, optional
-            Fraction of the stroke, from 0 to 1; if not given, the mechanism is as drawn, like the table of
-            forces.
+            Fraction of the stroke, from 0 to 1; if not given, the mechanism has the position of its file, to
+            which the table of forces also belongs.
         """
         ((drawn,),) = self.drawings(place or 0.0)
         return drawings.mechanism_figure(drawn, self.charts(place or 0.0))
 
     def drawings(self, place: float) -> Rows:
-        """Make the drawing of the mechanism at a fraction of its stroke (0 to 1), and as drawn (in grey)."""
+        """Draw the mechanism at a fraction of its stroke (0 to 1), and in grey the position of its file."""
         return ((self._drawing(self._index_at(place)),),)
 
     def charts(self, place: float) -> Sequence[Chart]:

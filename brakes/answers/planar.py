@@ -60,7 +60,7 @@ def select_rows(count: int) -> np.ndarray:
 
 
 def reactions_table(equilibrium: Equilibrium, title: str) -> Any:
-    """Make a table of loads, joint forces on the body named first, and forces in two-force bodies."""
+    """Make a table of loads, joint forces (each on the body named first) and forces in two-force bodies."""
     mechanism, magnitudes = equilibrium.position.mechanism, equilibrium.magnitudes
     rows: list[Sequence[str]] = [
         (load.name, "load", "", "", format_force(equilibrium.amplitudes[load.name]), load.unit, "")
@@ -109,7 +109,7 @@ _ROUNDING = 1e-9  # loads below this fraction of the largest are shown as 0
 
 @dataclass(frozen=True)
 class MechanismFriction(Result):
-    """Equilibria of a mechanism with friction, as drawn and over the stroke of a driver.
+    """Equilibria of a mechanism with friction, as drawn in its file and over the stroke of a driver.
 
     Attributes
     ----------
@@ -144,8 +144,8 @@ class MechanismFriction(Result):
     def locking(self, answered: bool) -> list[str]:
         """Return a sentence on each direction of motion whose status is not "determined".
 
-        If `answered`, only directions with possible forces are included, as of a self-locking mechanism; else
-        only directions without possible forces.
+        If `answered`, only directions in which the mechanism can be in equilibrium are included, such as a
+        self-locking direction; else only directions in which it cannot.
         """
         return [
             Words(name, ": ", way.message)
@@ -190,7 +190,10 @@ class MechanismFriction(Result):
         return table(title, ("size of", *ways, "unit"), [*rows, (), *rubbing], (0, 4))
 
     def curves(self) -> list[tuple[Load, str, np.ndarray]]:
-        """Return the unknown loads over the stroke, squeezing and releasing: load, name, and magnitudes."""
+        """Return a curve over the stroke for each unknown load and direction of motion.
+
+        Each curve is given by its load, its name, and its values [N, N m].
+        """
         return [
             (load, f"{load.name}, {name}", way.amplitudes[load.name])
             for load in self.last.without.position.mechanism.unknown_loads
@@ -280,8 +283,8 @@ class PlanarAnswer(Answer):
         stated = "" if np.isnan(error) else f" Error of the forces: {rounded_up(error)} of the largest."
         return (
             f"Statics: {in_files(message)}. Mobility {int(np.max(mobility))}, indeterminacy "
-            f"{int(np.max(indeterminacy))}; virtual work of all loads {np.max(virtual_work):.1e} of the "
-            f"largest force.{stated}"
+            f"{int(np.max(indeterminacy))}; virtual work of all loads, over the "
+            f"largest force: {np.max(virtual_work):.1e}.{stated}"
         )
 
     def handles(self, place: float) -> Sequence[Handle]:

@@ -70,7 +70,10 @@ class RubbingAnswer(Answer):
         return (*locks, *(() if self.fade is None else self.fade.refusals))
 
     def refusals_of_cases(self, count: int) -> dict[int, str]:
-        """Return a sentence on each design that locks or does not stop, by index; `count` is their number."""
+        """Return a sentence on each design that locks or does not stop, by the index of the design.
+
+        `count` is the number of all designs.
+        """
         hot = {} if self.fade is None else self.fade.messages_of_cases(count)
         return hot | self.result.messages_of_locked(count)
 
@@ -97,7 +100,7 @@ class RubbingAnswer(Answer):
         return [*([] if self.fade is None else stops_tables(self.fade)), self._doubt()]
 
     def _doubt(self) -> str:
-        """State the torque at this force with other friction, other pressure laws, and in reverse."""
+        """State how the torque changes at the same force by friction, by the pressure law, and in reverse."""
         torque, mu, back = self.result.torque, self.result.friction, not self.result.reverse
         ends = ", ".join(
             _change(self.again(friction=part * mu).torque, torque) for part in (1 - PART, 1 + PART)
@@ -185,5 +188,5 @@ def stops_tables(fade: Fade) -> Iterator[RenderableType]:
 
 
 def _change(other: float, torque: float) -> str:
-    """State a torque and its relative change."""
+    """State the torque `other` and its relative change from `torque`; "locks" if it is not finite."""
     return change(other, torque, "N m", "locks")

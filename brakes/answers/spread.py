@@ -72,7 +72,7 @@ def spread_of_brake(
     for each in given:
         _check_reach(inputs[each.name], each)
     if (designs := count_designs(len(given), used)) > brake.most_cases:
-        bound = f"it makes {designs} designs, and at most {brake.most_cases} can be solved"
+        bound = f"so many samples make {designs} designs, and at most {brake.most_cases} can be solved"
         raise InvalidValue("--samples", samples, bound, "give fewer samples")
     units = {each.name: each.unit for each in given}
     answers = _BrakeAnswers(brake, SweepRequest(design, tables, (), "zip", run), inputs, units, wanted)

@@ -88,7 +88,10 @@ def _of_stop(design: VehicleInput) -> tuple[Output, ...]:
 
 
 def _outputs(design: VehicleInput) -> tuple[Output, ...]:
-    """Describe all outputs; names of all but the lever's end in the axle that is downhill or leads."""
+    """Describe all outputs.
+
+    Names of outputs end in "front" or "rear", the axle that is downhill or leads; those of the lever do not.
+    """
     ways = tuple(
         Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)
         for axle in _AXLES
@@ -141,7 +144,10 @@ class VehicleAnswer(Answer):
         return [*(() if self.lever is None else self.lever.warnings), *stops]
 
     def tables(self) -> list[RenderableType]:
-        """Make the tables of both directions, of wanted values that do not exist, and of the lever."""
+        """Make the tables of both directions and of the lever.
+
+        A line names each input for which no value gives the wanted result.
+        """
         ways = [*self.ways.values()]
         # These outputs are left out: another row has the status in words, and another table has the stop.
         elsewhere = {"holds", *(each.name for each in _SLOWING)}
@@ -175,7 +181,7 @@ class VehicleAnswer(Answer):
             return float(np.degrees(min(way.holding.largest_slope for way in ways)))
 
         least = min((way.holding for way in self.ways.values()), key=lambda held: float(held.largest_slope))
-        of = f"tyres on the road: Largest slope both ways, past which the vehicle {least.limited_by},"
+        of = f"tyres on the road: Largest slope in both directions (past it, the vehicle {least.limited_by})"
         return hangs_on_friction(self.design, "road.friction", of, largest, "deg", "none")
 
     def _lacking(self) -> Iterable[tuple[str, str, str]]:
@@ -205,7 +211,8 @@ class VehicleAnswer(Answer):
 def _failures(way: OneDirection) -> list[str]:
     """Return sentences saying that the vehicle does not hold or does not stop in one direction.
 
-    For many designs only the stop has a sentence; the output `holds` is true for the designs that hold.
+    If `way` has the results of many designs, only the stop has a sentence; the output `holds` then tells
+    which designs hold.
     """
     holding, slowing = way.holding, way.slowing
     said = [f"it {slowing.message}"] if slowing is not None and not np.all(slowing.stops) else []

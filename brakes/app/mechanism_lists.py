@@ -277,7 +277,7 @@ def _fresh(word: str, taken: Sequence[str]) -> str:
 
 
 def _first(key: str, kind: str, tables: Mapping[str, Any]) -> Any:
-    """Choose the initial value of an input of a new joint or load: the newest body, the newest points."""
+    """Choose the initial value of an input of a new joint or load, such as the newest body or points."""
     points, body = [*_table_at(tables, "points")], next(reversed(_bodies(tables)), "")
     if key == "name":
         return _fresh(_PARTS[kind].kind(), [str(part.get("name")) for _, _, part in _parts(tables)])
@@ -372,7 +372,7 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
     try:
         core = mechanism_from_dict({**tables, "run": _without(run, "driver", "travel")}, "mechanism").core
     except (ConfigError, ValueError):
-        return  # no advice: the form shows mistakes beside its fields
+        return  # no advice while inputs are wrong: the form shows these mistakes beside its fields
     if not isinstance(core, Mechanism):
         return
     free = core.system.size - core.system.constraints
@@ -386,7 +386,7 @@ def _motion(tables: Mapping[str, Any]) -> Iterator[str]:
             f"{more if free > unknown else fewer}"
         )
     elif free == 1 and not (run.get("driver") and run.get("travel")):
-        yield "To see it move, choose the load that drives the stroke, and its travel."
+        yield "To see the mechanism move, choose the load that drives the stroke, and its travel."
 
 
 LISTS = Lists(covers, groups, put, add, remove, advice, empty)

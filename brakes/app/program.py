@@ -134,7 +134,10 @@ def _make_backwards(brake: BrakeType[Any]) -> Backwards:
 
 
 def _as_printed(answer: ForkliftAnswer) -> str:
-    """Make an HTML table of the results beside those by the paper's equations of the stop, as printed."""
+    """Make an HTML table that compares the results with those by the paper's equations of the stop.
+
+    The equations are used as printed, with their errors.
+    """
     printed = answer_as_printed(answer.design, answer.stages) or answer
     rows = list_outputs(stage_outputs(answer.stages), [answer, printed])
     return html([table("", ("", "corrected", "as printed", "unit"), rows, (0, 3))])

@@ -111,7 +111,7 @@ class Caliper:
         except OppositeTravelError:
             raise OppositeTravelError(
                 f"load {self.cable!r} opens the pads: turn the directions of {self.pads[0]!r} and "
-                f"{self.pads[1]!r} away from the rim, or the cable"
+                f"{self.pads[1]!r} away from the rim, or reverse the cable"
             ) from None
 
     def _pads(self, travel: dict[str, np.ndarray]) -> np.ndarray:
@@ -190,8 +190,9 @@ class Caliper:
     def _forces(self, position: Position, tension: float) -> dict[str, Any]:
         """Compute forces at a cable tension [N], as a mapping by attribute of `CaliperStroke`.
 
-        If the arms are coupled, the result is a weighted mean of the equilibria with only one pad: any such
-        mean is in equilibrium, and the weight is the right pad's fraction of the work.
+        If the arms are coupled, the result is a weighted mean of two equilibria: one with all force on the
+        right pad, and one with all force on the left pad. Any such mean is in equilibrium, and the weight is
+        the right pad's fraction of the work.
         """
         if self.centring:
             return _mean(solve(self._with(tension, None, None), position), None, self.pads, 1.0)
@@ -273,7 +274,8 @@ def _mean(
 ) -> dict[str, Any]:
     """Compute the mean of two equilibria, with the weight `share` of the first; `a` if there is no `b`.
 
-    The error and residual at each position are the larger ones of both equilibria; the status is found anew.
+    The error and residual at each position are the larger ones of both equilibria; the status follows
+    from the mean forces.
     """
     b = a if b is None else b
     weight = np.broadcast_to(share, a.residual.shape)

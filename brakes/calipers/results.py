@@ -62,7 +62,7 @@ class CaliperStroke(Result):
     Examples
     --------
     >>> run = calipers.VBrake().build().stroke(finger=40.0)
-    >>> float(abs(run.virtual_work).max()) < 1e-9  # what the finger does, the pads do
+    >>> float(abs(run.virtual_work).max()) < 1e-9  # the pads do the work of the finger
     True
     """
 
@@ -157,7 +157,7 @@ class PivotFriction(Result):
     Examples
     --------
     >>> found = calipers.VBrake().build().friction(0.15)
-    >>> 0 < found.squeeze < 1  # part of the force that arrives
+    >>> 0 < found.squeeze < 1  # fraction of the force that reaches the pads
     True
     """
 
@@ -201,7 +201,7 @@ class PadWear(Result):
 
     Examples
     --------
-    >>> worn = calipers.VBrake().build().wear([0.0, 0.001])  # m of the pad
+    >>> worn = calipers.VBrake().build().wear([0.0, 0.001])  # thickness in m
     >>> worn.lost.shape
     (2,)
     """

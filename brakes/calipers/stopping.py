@@ -58,7 +58,7 @@ class Stance:
     Examples
     --------
     >>> stance = calipers.Stance(cg_height=1.1, cg_behind_front=0.6)
-    >>> round(stance.pitch_limit(lift=1.0), 2)  # m/s2, g 0.6/1.1
+    >>> round(stance.pitch_limit(lift=1.0), 2)  # m/s2: g 0.6 / 1.1
     5.35
     """
 
@@ -130,7 +130,7 @@ class StoppingDistance(Result):
     pad_limit : float
         Force on each pad at the lower of these two limits [N], which is not exceeded.
     limited_by : {"brake", "grip", "pitching over"}
-        Limit of the deceleration.
+        What limits the deceleration.
     status : {"stops", "does not stop"}
         Whether the vehicle stops.
     message : str
@@ -284,7 +284,8 @@ def _integrated(energy: float, factor: float, force: Callable[[float], float]) -
     """Compute the distances [m] at which the brake has absorbed energies E from 0 to `energy` [J].
 
     The pad force F = ``force(s)`` [N] depends on the distance s, and the braking force is `factor` times F.
-    The function integrates ds/dE = 1/(factor F(s)). If F vanishes before, the last distance is inf.
+    The function integrates ds/dE = 1/(factor F(s)). The last distance is inf if F falls to zero before the
+    brake has absorbed all of the energy.
     """
     from scipy.integrate import solve_ivp
 

@@ -96,11 +96,13 @@ def actuate(pedal: Pedal, line: Line) -> Actuation:
     Raises
     ------
     ValueError
-        If the pedal would travel further than it can, or the pressure exceeds that of the cylinders.
+        If the pedal would travel further than it can, or the pressure exceeds the largest that
+        the cylinders bear.
 
     References
     ----------
-    Standard (a lever, the volume of a fluid): `Pedal`, `HydraulicLine`. Limits of force: ISO 6292:2020.
+    Standard formulas of a lever and of the volume of a fluid, in `Pedal` and `HydraulicLine`. Limits of the
+    force: ISO 6292:2020.
 
     Examples
     --------
@@ -148,7 +150,7 @@ def force_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
     References
     ----------
-    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
+    Standard formulas of a lever and of the volume of a fluid, as in `actuate`, solved in closed form.
 
     Examples
     --------
@@ -185,7 +187,7 @@ def ratio_for(pedal: Pedal, line: Line, actuator_force: Numbers) -> Needed:
 
     References
     ----------
-    Standard (a lever, and the volume of a fluid): `actuate`, solved in closed form.
+    Standard formulas of a lever and of the volume of a fluid, as in `actuate`, solved in closed form.
 
     Examples
     --------

@@ -110,7 +110,7 @@ class BrakedStop(Result):
 
     @property
     def limited_by(self) -> Any:
-        """The limit of the braking force: "brake", or "road" where the wheels lock."""
+        """What limits the braking force: "brake", or "road" where the wheels lock."""
         return self.stop.limited_by
 
     @property

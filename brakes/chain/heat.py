@@ -11,9 +11,10 @@ In repeated stops each front brake stops half of the truck's mass: at a wheel of
 moment of inertia J = M r^2 / 2 with the angular speed w = V / r, while the slope drives the wheel with the
 torque L = M g sin(beta) r / 2. The torque of the brake is the smaller of what the brake gives at the pedal's
 force and of what locks the wheel: the driver eases off before the wheels slide, so that all heat goes into
-the drums. While the force rises, a wheel turns farther than at full force:
-by the angle that makes the heat of a stop with unfaded linings equal the energy of that stop. Uphill the help
-of the slope is left out, as if the road were level: this overestimates the temperature.
+the drums. The gradual rise of the force is replaced: the wheel first turns freely by an angle, and then the
+full torque acts at once. This angle is such that a stop with unfaded linings has the same length and the same
+heat as with the gradual rise. Uphill the help of the slope is left out, as if the road were level: this
+overestimates the temperature.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ from brakes.chain.braked import BrakedStop
 from brakes.common.heat import Duty, Fade, repeat_stops, warn_of_pv
 from brakes.vehicle import Stop
 
-_LEAST = 1e-12  # friction that replaces 0, because without friction there is no torque
+_LEAST = 1e-12  # friction that replaces 0, which `internal_forces` refuses
 BRAKES = 2  # number of brakes that share the energy
 
 
@@ -103,7 +104,7 @@ class Heat(Result):
     ... )
     >>> conditions = vehicle.StopConditions(0.3019, 20 / 3.6, friction=0.7, reaction_time=0.5, rise_time=0.3)
     >>> heat = chain.heat_of_stop(vehicle.stop(truck, conditions))
-    >>> round(float(heat.drum_energy / heat.energy), 3)  # the wheels lock: the tyres take the rest
+    >>> round(float(heat.drum_energy / heat.energy), 3)  # the wheels lock: the tyres take more
     0.131
     """
 
@@ -119,7 +120,7 @@ class Heat(Result):
 
     def headline(self) -> Iterator[str]:
         """Yield the parts of the result's one-line summary; see `Result.headline`."""
-        yield f"energy {spanned(self.energy, 'J')}, of it in the drums {spanned(self.drum_energy, 'J')}"
+        yield f"energy {spanned(self.energy, 'J')}, of which the drums take {spanned(self.drum_energy, 'J')}"
         yield warned(self.warnings)
 
     @property
@@ -156,7 +157,7 @@ def heat_of_stop(
 
     References
     ----------
-    Standard (work of a force along its path), as in the docstring of the module.
+    Standard: work of a force along its path, as in the docstring of the module.
 
     Examples
     --------
@@ -220,7 +221,7 @@ def fade_of_stops(
 
     References
     ----------
-    Standard (conservation of energy): the docstring of the module, and of `repeat_stops`.
+    Standard: conservation of energy; see the docstrings of the module and of `repeat_stops`.
 
     Examples
     --------
@@ -259,10 +260,10 @@ def fade_of_stops(
 
 
 def _free_way(stop: Stop) -> np.ndarray:
-    """Compute the distance [m] that a truck rolls freely before its full braking force acts at once.
+    """Compute the distance [m] that a truck rolls freely in a stop that is equivalent to a given one.
 
-    A braking force that rises gradually is replaced by this one, such that the stop has the same length and
-    the same heat.
+    In the equivalent stop the truck first rolls without braking force, and then the full force acts at once.
+    It has the same length and the same heat as the given stop, in which the force rises gradually.
     """
     way = np.where(stop.stops, stop.rise_distance + stop.braking_distance, np.nan)
     return np.nan_to_num(np.maximum(way - heat_of_stop(stop).energy / stop.brake_force, 0.0))

@@ -104,7 +104,7 @@ class BrakeCable:
     cable_gain : float or ndarray
         Force on the actuator of each brake over the force in the cable behind the lever, without losses.
     efficiency : float or ndarray
-        Fraction of the force that arrives in spite of friction, above 0 up to 1.
+        Fraction of the force that reaches the actuators in spite of friction, above 0 up to 1.
     actuator_travel : float or ndarray
         Travel of each actuator until the linings press [m].
     brakes : float or ndarray
@@ -130,7 +130,7 @@ class BrakeCable:
     ]
     efficiency: Annotated[
         Numbers,
-        Described("", "eta", "share of the force that arrives", above=0, most=1, remedy="80 % is 0.8"),
+        Described("", "eta", "share of the force that is not lost", above=0, most=1, remedy="80 % is 0.8"),
     ] = 1.0
     actuator_travel: Annotated[
         Numbers, Described("m", "s_w", "travel of each actuator until the linings press", least=0)

@@ -57,7 +57,7 @@ class Pedal:
     runout: Annotated[
         Numbers | None,
         Described(
-            "N", "", "force of the rod at which the booster gives its most; never if not given", above=0
+            "N", "", "force of the rod where the booster's help stops growing; none if not given", above=0
         ),
     ] = None
     travel: Annotated[

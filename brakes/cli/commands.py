@@ -211,7 +211,7 @@ def run_command(
 
 
 def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callable[[], str]]]:
-    """Return title and HTML of each additional drawing of the results, for a report."""
+    """Return the title of each additional drawing of the results, with a function that makes its HTML."""
     from beamdyn.common.screens.screens import FoldedPart
 
     folded = (FoldedPart.of_drawings(*each) for each in brake.more.items())
@@ -221,7 +221,10 @@ def _folded(brake: BrakeType[Any], answer: Answer) -> Sequence[tuple[str, Callab
 def _answer_many(
     brake: BrakeType[Any], tables: Mapping[str, Any], file: str, asked: Asked
 ) -> tuple[Any, Sequence[str], str]:
-    """Solve a sweep, a spread or an inverse question; return the result, warnings, and a refusal or ""."""
+    """Solve a sweep, a spread or an inverse question.
+
+    Return the result, the warnings, and the reason why there is no answer ("" if there is one).
+    """
     import numpy as np
 
     from brakes.answers.finding import find_in_file
@@ -302,7 +305,7 @@ def caliper(
         for name, value in given.items():
             if value:
                 text = ", ".join(map(str, value)) if isinstance(value, tuple) else value
-                says = "--list only lists the named calipers; leave one of the two out"
+                says = f"--list only lists the named calipers; leave out --list or {name}"
                 raise ValueError(f"{name} = {text}: {says}")
         show(names_tables())
         return
@@ -333,7 +336,8 @@ def mechanism(
     Parameters
     ----------
     file
-        TOML file of a mechanism, part by part, or of a caliper; `brakes keys mechanism` lists all keys.
+        TOML file that describes a mechanism by its bodies, joints and loads, or a caliper; `brakes keys
+        mechanism` lists all keys.
     free_bodies
         Draw the free-body diagram of every body into this file: .png, .svg or .pdf.
     animation
@@ -421,7 +425,7 @@ def reproduce(*, output: SomeFolder = Path("brakes-reproduce")) -> None:
     Parameters
     ----------
     output
-        Folder for the pictures; it is made in the current one if needed, and its pictures are replaced.
+        Folder for the pictures; it is created if it does not exist, and pictures in it are replaced.
     """
     from brakes.reproduce import compare_all
 

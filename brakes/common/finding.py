@@ -81,7 +81,8 @@ def find(
 
     References
     ----------
-    Standard (intermediate values on pieces that rise or fall); roots by Alefeld, Potra and Shi (1995).
+    Standard: a continuous answer takes each value between those at the ends of a piece; roots by Alefeld,
+    Potra and Shi (1995).
 
     Examples
     --------
@@ -121,7 +122,7 @@ def find(
 def find_whole(
     answer: Answer, target: float, samples: Any, why: Callable[[float], str] | None = None
 ) -> WholeSolutions:
-    """Find all of the given whole numbers at which an answer has a wanted value, or has just passed it.
+    """Find the whole numbers at which an answer has a wanted value, or the first ones past it.
 
     Parameters
     ----------
@@ -144,7 +145,7 @@ def find_whole(
 
     References
     ----------
-    Standard (trial of each number).
+    Standard: each number is tried.
 
     Examples
     --------
@@ -177,7 +178,7 @@ def find_whole(
 
 @dataclass(frozen=True)
 class _Answers:
-    """The function `answer`, with its refusals of inputs converted to nan and a reason."""
+    """The function `answer` with nan in place of an exception for refused inputs, and the reasons."""
 
     answer: Answer
     reason: Callable[[float], str] | None
@@ -333,8 +334,8 @@ def _pieces(answers: _Answers, run: _Run) -> Iterator[Curve]:
 def _level_edge(answers: _Answers, level: float, inside: float, outside: float) -> float:
     """Find the input at which a level piece of the answer begins or ends.
 
-    The answer may deviate by half of the rounding that counts as level, so that the piece is level between
-    any two of its points.
+    Answers may deviate from `level` by half of the difference that counts as rounding. So any two answers of
+    the piece differ by rounding only.
     """
     return _edge(lambda x: step(level, answers(x), 0.5) == 0, inside, outside)[0]
 
@@ -353,9 +354,9 @@ def _turn(answers: _Answers, low: float, high: float, sign: float) -> float:
 
 
 def _unrounded(pieces: Sequence[Curve], target: float, rounding: float) -> float:
-    """Return the answer of the level piece nearest to the wanted value, if they differ by its rounding only.
+    """Return the answer of the level piece nearest to the wanted value `target` [unit of the answer].
 
-    Otherwise the wanted value itself is returned [both in the answer's unit].
+    If that answer differs from the wanted value by more than `rounding`, the wanted value is returned.
     """
     heights = [float(y[0]) for _, y in pieces if step(y[0], y[-1]) == 0]
     nearest = min(heights, key=lambda height: abs(height - target), default=target)
@@ -388,8 +389,8 @@ def _solve(
 def _root(answers: _Answers, target: float, bracket: dict[float, float]) -> tuple[float, bool]:
     """Find the input at which the answer passes the wanted value in a bracket, and whether it jumps there.
 
-    `bracket` has answer minus wanted value at both ends: computed again these may have another sign due to
-    rounding.
+    `bracket` maps each end of the bracket to the answer there minus the wanted value. These differences are
+    not computed again, as rounding might change their signs.
     """
     from scipy.optimize import toms748  # imported here, because only inverse questions use it
 

@@ -13,10 +13,10 @@ Without a load this is explicit. With a load, T1 is the fixed point of an increa
 the iteration from T0 rises and is bounded by the least fixed point, the one that the stop reaches first. A
 fixed point exists if the torque stays above the load on the way: T1 - L q / C then increases, and T1 is
 bracketed.
-Where the lining's torque fades to that of the load before, the brake never stops the load. Between stops T -
-T_a falls by exp(-h t / C), with the temperature T_a of the surroundings, the heat flow h per kelvin, and the
-time t. Without a load each stop heats by J w^2 / (2 C): the temperatures of the stops
-follow an affine map, which contracts by exp(-h t / C) and so has one limit.
+If the torque of the lining fades to that of the load before the energy is absorbed, the brake never stops the
+load. Between stops T - T_a falls by exp(-h t / C), with the temperature T_a of the surroundings, the heat
+flow h per kelvin, and the time t. Without a load each stop heats by J w^2 / (2 C): the temperatures of the
+stops follow an affine map, which contracts by exp(-h t / C) and so has one limit.
 """
 
 from __future__ import annotations
@@ -54,8 +54,8 @@ class Duty:
     Parameters
     ----------
     inertia : float or ndarray
-        Moment of inertia J of all that one brake stops, about its axis [kg m2]; of a vehicle, its share of
-        the mass times the square of the wheel's radius.
+        Moment of inertia J of all that one brake stops, about its axis [kg m2]; for a vehicle, the
+        brake's share of the mass times the square of the wheel's radius.
     speed : float or ndarray
         Speed w before each stop [rad/s].
     heated_mass : float or ndarray
@@ -69,14 +69,14 @@ class Duty:
     stops : float or ndarray
         Number of stops, a whole number.
     interval : float or ndarray
-        Time t between the end of a stop and the next [s].
+        Time t from the end of a stop to the start of the next [s].
     cooling : float or ndarray
         Heat flow to the surroundings between stops, over the temperature difference, h [W/K].
     surroundings : float or ndarray
         Temperature of the surroundings, and of the brake before the first stop [K].
     friction_curve : array_like, shape (n, 2), optional
         Temperatures [K] that increase, and the friction of the lining at each, with straight lines between;
-        the given friction at any temperature if there is none.
+        if not given, the friction is the same at all temperatures.
     most_pv : float or ndarray, optional
         Largest product of pressure and rubbing speed [W/m2]; not checked if not given.
 
@@ -152,7 +152,7 @@ class Duty:
 
     @property
     def kept(self) -> Numbers:
-        """Fraction of the temperature rise above the surroundings that an interval between stops leaves."""
+        """Fraction of the temperature rise above the surroundings that remains at the next stop."""
         return np.exp(-np.asarray(self.cooling) * self.interval / self.capacity)
 
 
@@ -208,7 +208,7 @@ class Fade(Result):
     last_friction: Annotated[Numbers, Meaning("", "friction at the end of the last stop")]
     energy: Annotated[Numbers, Meaning("J", "heat of the last stop")]
     settled: Annotated[
-        Numbers, Meaning("K", "above the surroundings after very many stops, if no load drives on")
+        Numbers, Meaning("K", "rise above the surroundings after very many stops, without load torque")
     ]
     pv: Annotated[
         Numbers, Meaning("W/m2", "largest pressure times rubbing speed, before the first stop", "MW/m2")
@@ -222,14 +222,14 @@ class Fade(Result):
 
     @property
     def refusals(self) -> tuple[str, ...]:
-        """Reasons why a stop has no result: it does not end, or is hotter than the friction curve."""
+        """Reasons why a stop has no result: it does not end, or gets hotter than the friction curve."""
         if np.ndim(self.status) == 0:
             return tuple(self.messages_of_cases(1).values())
         found = [(status, words) for status, words in _WORDS.items() if np.any(self.status == status)]
         return tuple(f"{words} (cases: {np.sum(self.status == status)})" for status, words in found)
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Return by case index which stop has no result, and why; `count` is the number of cases."""
+        """Return which stop has no result, and why, by index of the case; `count` counts all cases."""
         status, stops = (np.broadcast_to(x, (count,)) for x in (self.status, self.duty.stops))
         ended = np.isfinite(self.end).reshape(len(self.end), -1)
         first = np.broadcast_to(1 + ended.argmin(axis=0), (count,))
@@ -256,7 +256,7 @@ def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
 
 
 _WORDS = {
-    "never stops": "the brake gives less than load_torque or a slope, at once or by fading: it never stops",
+    "never stops": "load_torque or a slope exceeds the brake's torque, at once or by fading: it never stops",
     "too hot": "the brake gets hotter than the last temperature of friction_curve: extend the curve",
 }
 TorqueAt = Callable[[Numbers], Numbers]
@@ -289,7 +289,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
 
     References
     ----------
-    Standard (conservation of energy), as in the docstring of the module.
+    Standard: conservation of energy, as in the docstring of the module.
 
     Examples
     --------
@@ -345,7 +345,7 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
     high = np.where(np.isfinite(path.last), path.last, most)
 
     def over(end: np.ndarray) -> np.ndarray:
-        """Return whether below a temperature [K] the stop ends or the torque fades to that of the load."""
+        """Return whether, up to a temperature [K], the stop ends or the torque fades to the load's torque."""
         return path.stopped(start, end) | (path.least(start, end) <= load)
 
     # Only a stop with a friction curve can be too hot. Without a curve the stop ends at `high`, but rounding
@@ -407,7 +407,10 @@ class _Warming:
         return np.interp(temperature, *self.knots.T) + 0 * np.asarray(temperature)
 
     def least(self, start: Numbers, end: Numbers | None = None) -> np.ndarray:
-        """Compute the least torque [N m] between two temperatures: at an end, or a point of the curve."""
+        """Compute the least torque [N m] between two temperatures.
+
+        It occurs at one of them, or at a row of the friction curve.
+        """
         found = [self.friction(each) for each in ((start,) if end is None else (start, end))]
         if self.knots is not None and end is not None:
             found += [np.where((start < at) & (at < end), mu, found[0]) for at, mu in self.knots]

@@ -41,7 +41,7 @@ class SlidesOrLocks(Result):
         return _say_locked(self.grips, mu, least, where)
 
     def messages_of_locked(self, count: int) -> dict[int, str]:
-        """Return the message of each case that locks, by its index; `count` is the number of cases."""
+        """Return the message of each case that locks, by its index; `count` is the number of all cases."""
         given = self.friction, self.locking_friction, self.locked
         mu, least, locked = (np.broadcast_to(x, (count,)) for x in given)
         return {i: _say_locked(self.grips, mu[i], least[i]) for i in np.flatnonzero(locked).tolist()}

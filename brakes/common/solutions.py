@@ -158,7 +158,7 @@ class Solutions(Result):
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """Sentence that there may be more solutions; empty if the pieces have settled."""
+        """Warning that there may be more solutions; empty if denser samples no longer changed the pieces."""
         count = f"the rising and falling ranges of {self.output} still change at {len(self.samples)} samples"
         return () if self.settled else (f"{count}: there may be more solutions; give a narrower range",)
 
@@ -242,7 +242,7 @@ class Solutions(Result):
 
 @dataclass(frozen=True)
 class WholeSolutions(Solutions):
-    """All whole numbers between two bounds at which an answer has a wanted value, or has just passed it.
+    """All whole numbers between two bounds at which an answer has a wanted value, or the first ones past it.
 
     Each number is tried. `values` has those whose answer is the wanted value; where the wanted value lies
     between the answers of two neighbouring numbers, it has the second of them.

@@ -16,7 +16,7 @@ from brakes.calipers import NAMED, Caliper, Stance, StoppingDistance, stop
 from brakes.planar.part import DescribedDirection, DescribedPoint
 from brakes.planar.rows import Point as Coordinates
 
-SHORT_TEXTS = ConfigDict(str_max_length=200)  # limit of titles and names, which are drawn
+SHORT_TEXTS = ConfigDict(str_max_length=200)  # limits titles and names, as drawings show them
 
 # Inputs that are points, directions or travels ----------------------------------------------------
 
@@ -78,14 +78,14 @@ QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuanti
 
 
 _DRIVER = Field(
-    description="load that drives a mechanism without [caliper]; with friction, motion along it is squeezing"
+    description="load that drives a mechanism without [caliper]; with friction, positive travel is squeezing"
 )
-_FRICTION = Quantity("", "mu", "friction of the pins that have none of their own", least=0, most=10)
+_FRICTION = Quantity("", "mu", "friction coefficient of pins for which none is given", least=0, most=10)
 _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]
 
 
 class RunInput(Section):
-    """Table [run] of a file: the stroke, the finger's force, and further quantities to compute."""
+    """Table [run] of a file: the stroke, the finger's force, friction, and wear of the pads."""
 
     finger: Annotated[float, Quantity("N", "P", "force of the finger on the hand lever", above=0)] = 40.0
     driver: Annotated[str | None, _DRIVER] = None
@@ -96,7 +96,7 @@ class RunInput(Section):
 
 
 class _StopInput(CoreSection):
-    """Table [stop] of a file: the vehicle that this brake alone stops; inputs of `stop` and `Stance`."""
+    """Table [stop] of a file: the vehicle that this one brake stops; the inputs of `stop` and `Stance`."""
 
     @cached_property
     def core(self) -> StoppingDistance:

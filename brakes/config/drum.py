@@ -1,4 +1,4 @@
-"""Input files of drum brakes: [brake], [shoe], [load]; [second_shoe] where it differs; [heat]."""
+"""Input files of drum brakes: [brake], [shoe], [load], [heat]; [second_shoe] if the shoes differ."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class DrumBrakeInput(RubbingInput):
 
 
 class DrumInput(CoreSection):
-    """File of a drum brake: [brake], [shoe], [load]; [second_shoe] where it differs; [heat]."""
+    """File of a drum brake: [brake], [shoe], [load], [heat]; [second_shoe] if the shoes differ."""
 
     brake: DrumBrakeInput
     shoe: _ShoeInput
@@ -101,7 +101,7 @@ class DrumInput(CoreSection):
         try:  # inputs that [second_shoe] leaves out are those of the first shoe
             second = _Shoe.model_construct(**dict(self.shoe) | given).core if self.second_shoe else None
         except InvalidValue as error:
-            between = ": " if " " in error.field else "."  # a text with a space is no key of the file
+            between = ": " if " " in error.field else "."  # a phrase is no key of the file
             raise replace(error, field=f"second_shoe{between}{error.field}") from None
         if self.brake.assembly == "single":
             if self.second_shoe is not None:

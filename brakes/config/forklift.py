@@ -57,9 +57,9 @@ def forklift_from_dict(data: Mapping[str, Any], source: str = "forklift") -> For
 
 
 class DuoServoInput(MadeSection):
-    """Table [brake] of a file: geometry of a duo-servo brake's right side at rest; the left is its mirror."""
+    """Table [brake] of a file: geometry of a duo-servo brake's right side at rest; the left mirrors it."""
 
-    if TYPE_CHECKING:  # a field made from the argument of `DuoServo.move_shoes`
+    if TYPE_CHECKING:  # this field is made from an argument of `DuoServo.move_shoes`
         clearance: float
 
     @property

@@ -122,7 +122,7 @@ class MechanismInput(config.CoreSection):
             if friction and not made.friction:
                 bound = "it is for pins, and there are no pins; give friction at the slot or contact"
                 raise InvalidInput("run.friction", friction, bound)
-            rubs = made.friction or "friction" in self.run.model_fields_set  # a sweep may include friction 0
+            rubs = made.friction or "friction" in self.run.model_fields_set  # true also if a sweep sets 0
             if self.run.driver is not None and self.run.travel is None and not rubs:
                 remedy = "give the travel of the driver, or leave out driver"
                 raise config.MissingValue("run.travel", None, remedy)

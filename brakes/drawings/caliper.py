@@ -50,7 +50,7 @@ def caliper_drawing(caliper: Caliper, closed: Equilibrium, title: str = "") -> D
 
 def title_of(caliper: Caliper, run: CaliperStroke, cable: float) -> str:
     """Compose the title of a drawing at a travel of the cable [m]."""
-    return f"{caliper.name}: {1e3 * cable:.3g} mm of cable, {run.finger_force:g} N on the lever; grey: open"
+    return f"{caliper.name}: cable travel {1e3 * cable:.3g} mm, {run.finger_force:g} N on lever; grey: open"
 
 
 def caliper_figure(

@@ -28,7 +28,7 @@ _ANGLES, _FRICTIONS = 61, 121  # numbers of points of the curves over the angle,
 
 
 def brake_figure(result: BrakeResult) -> Figure:
-    """Draw a drum brake with forces, pressure and shoe factors; a locked brake without pressure.
+    """Draw a drum brake with its forces and shoe factors and, unless it locks, its pressure.
 
     Parameters
     ----------
@@ -45,10 +45,10 @@ def charts_of(result: BrakeResult) -> list[Chart]:
 
 
 def drawing_of(result: BrakeResult) -> Drawing:
-    """Draw the shoes in the drum with their forces to one scale, or a mark on each that locks; in m.
+    """Draw the shoes in the drum with their forces to one scale, or a mark on each shoe that locks.
 
-    The result is for a single case. The resultants N of pressure and T of friction act where their lines of
-    action cross: outside the drum, at the effective arm from its centre.
+    The result is for a single case, and lengths are in m. The resultants N of pressure and T of friction act
+    where their lines of action cross: outside the drum, at the effective arm from its centre.
     """
     r = float(result.shoes[0].shoe.drum_radius)
     vectors = (v for s in result.shoes for v in (s.normal, s.tangential, s.pin_reaction))
@@ -174,6 +174,6 @@ def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool 
     marks = [ChartMark(friction, f"{friction:g}", at_foot=True)] if friction else []
     if limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=of_shoes[first].name))
-    # C* grows without bound as friction approaches locking: C* at a friction well below sets the axis.
+    # C* grows without bound towards locking: the range of its axis follows from C* at a lower friction.
     near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, result.c_star))
     return over_friction("Shoe factors", [*of_shoes, *whole], marks, near)

@@ -18,7 +18,7 @@ _KEY = {
 
 
 def positions(followed: Kinematics) -> list[Drawing]:
-    """Draw the brake at rest, with the linings on the drum, and with the piston at its bottom."""
+    """Draw three positions of the brake: at rest, linings on the drum, and piston at its bottom."""
     titles = (
         f"at rest, clearance {1e3 * float(followed.clearance):.3g} mm",
         f"linings on the drum, shoes turned {np.degrees(followed.right.turn[-1]):.3g} deg",

@@ -69,7 +69,7 @@ def factor_chart(result: MachineResult) -> Chart:
     marks = [ChartMark(mu, f"{mu:g}", at_foot=True)]
     if 0 < limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=own.name))
-    # C* grows without bound as friction approaches locking: C* at a friction well below sets the axis.
+    # C* grows without bound towards locking: the range of its axis follows from C* at a lower friction.
     near = float(np.interp(min(mu, 0.6 * top), at, own.y))
     grows = any(np.isfinite(way.locking_friction).any() for way in ways)
     return over_friction("Brake factor", curves, marks, near if grows else None)

@@ -3,7 +3,8 @@
 Axes of a shoe (Vardanyan et al. 2019): the drum's centre O is the origin, the shoe lies on the +x
 side, its pin at (b, -c), and the actuating force P acts along +x at y = +a. Angles alpha run from -y
 (towards the pin) through +x: a point of the drum is r (sin alpha, -cos alpha). Describe a shoe
-on the other side as if it lay on the +x side; its vectors are in these axes of its own. The shoe leads
+on the other side as if it lay on the +x side: vectors of its results are in the axes mirrored to its side.
+The shoe leads
 if the drum's surface moves towards the pin: on the +x side, if the drum turns clockwise.
 """
 

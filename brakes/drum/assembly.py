@@ -216,7 +216,7 @@ def brake_torque(
         refuse(np.asarray(mu) == 0, "friction", mu, "", "without friction there is no torque", "give a force")
         bound = "a shoe locks: no torque can be demanded of the brake"
         locked = _over(np.logical_or, [shoe.locked for shoe in at_unit_force])
-        refuse(locked, "friction", mu, "", bound, "give a force to see which one, or less friction")
+        refuse(locked, "friction", mu, "", bound, "give a force to see which shoe locks, or less friction")
         value = value / sum(shoe.torque for shoe in at_unit_force)
     elif name == "peak_pressure":  # the shoe with the largest pressure limits the common force
         value = value / _over(np.maximum, [shoe.peak_pressure for shoe in at_unit_force])

@@ -62,8 +62,8 @@ class Shoe:
     Raises
     ------
     ValueError
-        If a length is not positive, the pin not below the centre or far from the drum, the force not
-        above the pin, or the arc empty, over the pin, or past the pressure's second zero.
+        If a length is not positive, the pin is not below the centre or is far from the drum, the force is not
+        above the pin, or the lining's arc is empty, overlaps the pin, or passes the pressure's second zero.
 
     References
     ----------
@@ -84,7 +84,7 @@ class Shoe:
         Annotated[Numbers, Described("rad", "alpha1", _START, key="lining_start")],
         Annotated[Numbers, Described("rad", "alpha2", _END, key="lining_end")],
     ]
-    pivot: tuple[  # b and c, as in files, for the pin at (b, -c)
+    pivot: tuple[  # files give b and c of the pin at (b, -c)
         Annotated[Numbers, Described("m", "b", _OFFSET, key="pivot_offset")],
         Annotated[Numbers, Described("m", "c", _DEPTH, above=0, key="pivot_depth")],
     ]
@@ -108,7 +108,7 @@ class Shoe:
         bound = "the arc is empty: it must exceed {other}"
         refuse(np.asarray(a2) - a1 <= _ROUNDING, "lining[1]", a2, "rad", bound, other="lining[0]")
         pin, start = self.pin_angle, np.asarray(a1)
-        advice = "start it beyond; angles are in {unit}, from -y"
+        advice = "start the lining beyond this angle; angles are in {unit}, from -y"
         bound = "the lining overlaps the pin, at {limit}"
         refuse(start < pin - _ROUNDING, "lining[0]", a1, "rad", bound, advice, limit=pin)
         bad = start < self.phase - _ROUNDING
@@ -276,7 +276,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     bracket_error = i.n_error + mu * i.d_error + _EPS * (n + mu * np.abs(d))
     locked = (limit < np.inf) & (n + s * mu * d <= np.maximum(LEAST_MARGIN * n, bracket_error))
     bracket = np.where(locked, np.nan, n + s * mu * d)
-    load = force * arm / bracket  # peak pressure times the area that it acts on
+    load = force * arm / bracket  # scale p0 of the pressure times the area width * radius [N]
     normal = _turn(load[..., None] * _vector(-i.S, i.C), shoe.phase)
     tangential = _turn((s * mu * load)[..., None] * _vector(i.C, i.S), shoe.phase)
     pin = -(normal + tangential)
@@ -285,7 +285,7 @@ def solve_shoe(shoe: Shoe, mu: Numbers, leading: bool, force: Numbers) -> ShoeRe
     # The sum of the moments about the centre, relative to P (a + c), checks the solution.
     b, y = shoe.pivot
     left = s * torque - shoe.force_arm * force + b * pin[..., 1] - y * pin[..., 0]
-    # The error of n + s mu d gives the relative errors of dC*/dmu and of the vectors; the largest one counts.
+    # Relative errors of dC*/dmu and of the vectors follow from that of n + s mu d; `error` is the largest.
     arms = (np.abs(shoe.force_arm) + np.abs(shoe.pivot[1])) / shoe.moment_arm
     from_bracket = bracket_error / bracket
     slope_error = i.K_error + i.n_error / np.abs(i.n) + from_bracket

@@ -75,7 +75,7 @@ class DuoServo(HasLevers):
     ]
     adjuster: tuple[
         Annotated[Numbers, Described("m", "x_a", "pin of the adjuster, from the centre", above=0)],
-        Annotated[Numbers, Described("m", "y_a", "pin of the adjuster, above the centre: negative", below=0)],
+        Annotated[Numbers, Described("m", "y_a", "height of the adjuster's pin: negative", below=0)],
     ]
     face_tilt: Annotated[Numbers, Described("rad", "alpha", "tilt of the pistons' faces", **ACUTE)]
     contact_angle: Annotated[Numbers, _CONTACT]
@@ -133,7 +133,7 @@ class DuoServo(HasLevers):
         return self._assemble_motion(c, turn, psi, tip)
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """Compute the lever arms, with one bound of their relative errors and of the angles' errors [rad]."""
+        """Compute the levers, and one bound for the arms' relative errors and the angles' errors [rad]."""
         if clearance is None:
             raise ValueError("clearance is missing: the lever arms depend on it; give it in m")
         return self.move_shoes(clearance).levers_and_error()
@@ -276,13 +276,13 @@ class ShoeMotion(HasLevers, Result):
         return (seating + moved + _error_of_arccos(face + moved, np.sin(height)))[()]
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """Return the lever arms, with one bound of their relative errors and of the angles' errors [rad]."""
+        """Return the levers, and one bound for the arms' relative errors and the angles' errors [rad]."""
         least = np.minimum(self.levers.a1, self.levers.a2)
         return self.levers, self.error * self.geometry.drum_radius / least
 
     @property
     def residual(self) -> Numbers:
-        """Larger of two residuals over r: gap at the contact point, and of the piston to its bottom."""
+        """Larger of two residuals over r: gap at the contact, and distance of the piston from its bottom."""
         brake, r = self.geometry, self.geometry.drum_radius
         x, y = _turned(r - self.clearance, 0.0, brake.contact_angle)
         seated = np.hypot(*brake._after_seating(np.asarray(self.seating_turn), x, y)) - r

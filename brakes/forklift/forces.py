@@ -136,7 +136,10 @@ class InternalForces(Result):
         return _SENTENCES[str(self.status)]
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Return the message of each case without equilibrium, by its index; `count` is their number."""
+        """Return the message of each case without equilibrium, by its index.
+
+        `count` is the number of all cases.
+        """
         each = np.broadcast_to(self.status, (count,)).tolist()
         return {i: _SENTENCES[status] for i, status in enumerate(each) if status != "equilibrium"}
 
@@ -388,7 +391,7 @@ def equilibrium_equations(
     >>> pins = (forces.A_vector, forces.B_vector, forces.C_vector, forces.D_vector)
     >>> unknowns = np.array([*np.concatenate(pins), forces.Q, forces.P_L])
     >>> left = forklift.equilibrium_equations(forces.levers, 11e3, 11650.0, unknowns)
-    >>> bool((abs(left) < 1e-6).all())  # in balance: N, N m
+    >>> bool((abs(left) < 1e-6).all())  # residuals [N, N m]: in balance
     True
     """
     r, alpha1, alpha2, gamma = levers.drum_radius, levers.alpha1, levers.alpha2, levers.gamma

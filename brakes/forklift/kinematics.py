@@ -60,7 +60,7 @@ class Stage:
     turn : ndarray, shape (S,)
         Turn of the shoe, clockwise (stage 1), or of the drum, counter-clockwise (stage 2) [rad].
     rank : ndarray of int, shape (S,)
-        Rank of the matrix of constraints.
+        Rank of the constraints' Jacobian.
     least_singular_value : ndarray, shape (S,)
         Smallest over largest singular value of the constraints: near 0, a constraint is nearly redundant.
 
@@ -221,7 +221,8 @@ def follow_shoes(geometry: DuoServo, clearance: float, positions: int = 21) -> K
 def build_seating_mechanism(geometry: DuoServo, clearance: float, side: str = "right") -> Mechanism:
     """Build the mechanism of stage 1 of one side, ``"right"`` or ``"left"``.
 
-    The loads have zero magnitude: they measure the piston's travel and close the clearance.
+    Two loads of zero magnitude measure the travel of the piston, and the distance of the contact point from
+    the drum's centre.
 
     References
     ----------

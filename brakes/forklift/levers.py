@@ -32,13 +32,13 @@ class HasLevers:
         Raises
         ------
         ValueError
-            If the clearance is missing where it is needed, is given where the arms belong to one position, or
-            as for `DuoServo.move_shoes`.
+            If the clearance is missing where it is needed, is given for `Levers`, which do not
+            depend on it, or as for `DuoServo.move_shoes`.
         """
         return self.levers_and_error(clearance)[0]
 
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
-        """Find the lever arms, with one bound of their relative errors and of the angles' errors [rad]."""
+        """Find the levers, and one bound for the arms' relative errors and the angles' errors [rad]."""
         raise NotImplementedError
 
 
@@ -66,7 +66,7 @@ class Levers(HasLevers):
     Raises
     ------
     ValueError
-        If a length is not positive, or P_L and Q, or P_T and Q, more than 90 degrees apart.
+        If a length is not positive, or if P_L and Q, or P_T and Q, are more than 90 degrees apart.
 
     References
     ----------
@@ -121,5 +121,5 @@ class Levers(HasLevers):
     def levers_and_error(self, clearance: Numbers | None = None) -> tuple[Levers, Numbers]:
         """Return these levers, and zero as the error of their arms and angles, which are given."""
         if clearance is not None:
-            raise ValueError("clearance: lever arms belong to one position; give it with a DuoServo geometry")
+            raise ValueError("clearance: the lever arms are given; leave it out, or give a DuoServo")
         return self, 0.0

@@ -38,7 +38,7 @@ class Ring(Machine):
     Raises
     ------
     ValueError
-        If a value is out of bounds, or the outer radius not above the inner one.
+        If a value is out of bounds, or the outer radius is not above the inner one.
     """
 
     inner_radius: Annotated[Numbers, Described("m", "r_i", "inner radius of the lining", above=0)]
@@ -166,7 +166,7 @@ class Plates(Ring):
     Raises
     ------
     ValueError
-        If a value is out of bounds, the outer radius is not above the inner one, or the number not whole.
+        If a value is out of bounds, the outer radius is not above the inner one, or the number is not whole.
 
     References
     ----------
@@ -206,7 +206,7 @@ class Cone(Ring):
     Raises
     ------
     ValueError
-        If a value is out of bounds, or the outer radius not above the inner one.
+        If a value is out of bounds, or the outer radius is not above the inner one.
 
     Notes
     -----
@@ -251,4 +251,4 @@ class Cone(Ring):
         if not sticks.any():
             return ()
         least = float(np.min(np.broadcast_to(self.taper, sticks.shape)[sticks]))
-        return (f"the cone sticks from friction {least:.4g} on, its taper: pull it out of the cup",)
+        return (f"the cone sticks from friction {least:.4g} on, tan of its angle: pull it out of the cup",)

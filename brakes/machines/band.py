@@ -15,7 +15,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from brakes.machines.machine import Lining, Machine
 
-_FIRST = "arm of the band's first end about the lever's fulcrum, which the force on the lever pulls"
+_FIRST = "arm about the fulcrum of the band's first end, which the force on the lever pulls"
 _SECOND = (
     "arm of the second end, on the other side of the fulcrum, where the band helps to pull: 0 if it is fixed "
     "(a simple band), above 0 in a differential band, below 0 if the lever pulls both ends"

@@ -62,8 +62,8 @@ class Block(Machine):
     Angles x are from the block's middle, towards the force; h = r + e; q is the pressure over its largest
     value p. With C, S, Q the integrals of q cos x, q sin x, q over the block and A = w r,
     force * arm = A p (b C + h S - mu (h C - b S - r Q)) if the surface moves towards the fulcrum; mu's sign
-    changes where it moves away. torque = mu A p r Q. Under wear q is as b cos x + h sin x: the lever turns
-    about its fulcrum.
+    changes where it moves away. torque = mu A p r Q. Under wear q is proportional to
+    b cos x + h sin x, as the lever turns about its fulcrum.
 
     References
     ----------

@@ -23,7 +23,7 @@ from brakes.common.loads import take_load
 from brakes.common.locking import LEAST_MARGIN, RubbingResult
 
 _EPS = np.finfo(float).eps
-# Imaginary part of the friction for complex-step derivatives, which do not cancel digits.
+# Imaginary part of the friction for complex-step derivatives, which lose no digits by cancellation.
 _STEP = 1e-30
 _ROUNDINGS = 16.0  # number of rounding errors that add up in a lining's force
 
@@ -258,7 +258,7 @@ def solve_brake(
 
     References
     ----------
-    Standard: force and torque of each lining at one largest pressure, here 1 Pa; see its class.
+    Standard: force and torque of each lining are proportional to its largest pressure; see the brake's class.
 
     Examples
     --------

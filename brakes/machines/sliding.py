@@ -65,7 +65,7 @@ class Sliding(Machine):
     Raises
     ------
     ValueError
-        If a value is out of bounds, the lining is empty, or the force not above the abutment.
+        If a value is out of bounds, the lining is empty, or the force is not above the abutment.
 
     References
     ----------
@@ -99,7 +99,7 @@ class Sliding(Machine):
         Described(
             "rad",
             "psi",
-            "angle of the abutment's force above the actuating force",
+            "angle of the abutment's force above the direction of the actuating force",
             least=-np.pi / 4,
             most=np.pi / 4,
         ),

@@ -1,7 +1,7 @@
 """Statics of planar mechanisms, with a diagnosis of loose bodies and statically undetermined forces.
 
-`JOINTS` and `LOADS` list all kinds; files, forms and drawings are made from these lists.  The docstrings of
-`Joint` and `Load` tell how to write a new one.
+`JOINTS` and `LOADS` list the classes of all joints and loads; files, forms and drawings are made from these
+lists.  The docstrings of `Joint` and `Load` tell how to write a new one.
 """
 
 from brakes.planar.friction import FrictionalEquilibrium, solve_with_friction

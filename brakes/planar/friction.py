@@ -34,9 +34,9 @@ class FrictionalEquilibrium:
     Parameters
     ----------
     squeeze, release : Equilibrium
-        Equilibria with friction while the driver's coordinate grows, and while it decreases.  If the unknown
-        load, in the direction that it has without friction, cannot move the mechanism this way, the status is
-        "self-locking".  The load then acts in the opposite direction; if the mechanism jams, so that no load
+        Equilibria with friction while the driver's coordinate grows, and while it decreases.  The status is
+        "self-locking" if the unknown load, in the direction that it has without friction, cannot cause this
+        motion.  The load then acts in the opposite direction; if the mechanism jams, so that no load
         moves it, all forces are nan.
     without : Equilibrium
         Equilibrium without friction.
@@ -63,7 +63,7 @@ class FrictionalEquilibrium:
 def solve_with_friction(
     mechanism: Mechanism, driver: str, position: Position | None = None
 ) -> FrictionalEquilibrium:
-    """Compute reactions and unknown amplitudes while the mechanism begins to move, or moves slowly.
+    """Compute reactions and unknown magnitudes of loads while the mechanism begins to move, or moves slowly.
 
     A pivot of radius r resists with the couple r mu/sqrt(1 + mu^2) |reaction|, a contact or slot with the
     force mu |reaction|, each against the relative velocity of the motion that the driver causes.  The
@@ -114,7 +114,7 @@ def solve_with_friction(
     balance, system = balance_at(mechanism, position), mechanism.system
     gradient = balance.rows.gradient
     motion = decompose(gradient[:, : system.constraints], system.rounding).vt[:, -1]
-    rate = times(gradient, motion)  # velocities per unit of motion
+    rate = times(gradient, motion)  # rates of the rows' values per unit of the mechanism's motion
     driven, slip = rate[:, [system.loads[driver]]], rate[:, list(system.friction.values())]
     check_moves(system, driver, driven)
     still = rank_tolerance(system.rounding)
@@ -142,7 +142,7 @@ def _branch(
     forces = decompose(balance.matrix, system.rounding)
     regularity = decompose(_friction(system, balance, multiplier, law)[1], system.rounding).s
     kept = regularity[:, -1] / regularity[:, 0]
-    jammed |= kept <= rank_tolerance(system.rounding)  # so near to jamming that rounding decides
+    jammed |= kept <= rank_tolerance(system.rounding)  # rounding decides whether it jams
     multiplier[jammed] = start[jammed]
     result = collect_result(position, balance, forces, multiplier, jammed, kept)
     if (jams & ~jammed).any():
@@ -171,7 +171,7 @@ def _branch(
 def _jams_when_disturbed(
     system: System, balance: Balance, start: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Find joints with friction that press with no force, and positions at which disturbances jam.
+    """Find joints with friction but no pressing force, and positions where a disturbance jams the mechanism.
 
     If loads act exactly in line, a joint may press with no force, whose direction is then meaningless.
     There can be two equilibria: without pressure, and jammed.  The jammed one needs a disturbance, however
@@ -214,7 +214,7 @@ def _warn_of_jamming(mechanism: Mechanism, unpressed: np.ndarray, jams: np.ndarr
     """Warn that any offset of a load jams the joints marked in `unpressed` at the positions `jams`."""
     names = [name for k, name in enumerate(mechanism.friction) if unpressed[jams, k].any()]
     press = "press" if len(names) > 1 else "presses"
-    remedy = "reduce friction, or guide it over a greater length"
+    remedy = "reduce friction, or guide the body over a greater length"
     return Statement(
         f"{join_names(map(repr, names))} {press} with no force{tell_where(jams)} because "
         "the loads act exactly in line; any offset of a load, however small, jams the mechanism: ",
@@ -259,7 +259,9 @@ def _newton(
 def _friction(
     system: System, balance: Balance, multiplier: np.ndarray, law: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Set the multipliers of the friction forces in place, by friction over pressing force (`law`).
+    """Set the multipliers of the friction forces, in place, to `law` times the pressing forces.
+
+    `law` (positions, joints) is the signed friction over the pressing force of each joint.
 
     Return the residual of the equilibrium equations and its Jacobian with respect to the unknown multipliers.
     """

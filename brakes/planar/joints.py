@@ -46,7 +46,7 @@ _NORMAL = 0.9999  # least cosine of the angle between the normal of a round face
 _TURNS = 0.1  # rotation of a straight face over a stroke above which there is a warning [deg]
 _PIVOT = Described("m", "r", "radius of the pivot", least=0, remedy="give the radius of the pivot")
 _CENTRE = DescribedPoint("m", meaning="centre of a round face; straight if not given")
-_OPEN = "it is open, or its normal is reversed; remove or turn it"
+_OPEN = "it is open, or its normal is reversed; remove it, or reverse its normal"
 _ROUND = Described("m", "R", "radius of a round face, if not the drawing's", above=0)
 SLACK = OneWay("cable", "push", "cable slackens", "it is slack; remove it, or reverse the loads")
 
@@ -68,7 +68,7 @@ class Pin(OnTwoBodies, Joint):
 
     References
     ----------
-    Standard: two equal points; friction circle.
+    Standard: the two points coincide; friction circle of a pin.
 
     Examples
     --------
@@ -253,7 +253,7 @@ class Contact(OnTwoBodies, Joint):
             return
         check_distinct(self.title, (self.at, self.centre), "move the point or the centre of the face")
         if self.on is not None:
-            remedy = "give no `on`, which is a point of a straight one"
+            remedy = "give no `on`, which is a point of a straight face"
             raise ValueError(f"{self.title} has a round face: {remedy}")
         if abs(self._cosine) < _NORMAL:
             raise ValueError(
@@ -292,7 +292,7 @@ class Contact(OnTwoBodies, Joint):
         if self.centre is None and turned > _TURNS:
             yield (
                 f"{self.title} has a straight face, which turns with {self.other!r} by {turned:.3g} deg: "
-                "right for a flat face; of a round one, such as a drum, give the centre, not the normal"
+                "right for a flat face; for a round one, such as a drum, give the centre, not the normal"
             )
 
     def shapes(self) -> tuple[Shape, ...]:

@@ -47,8 +47,9 @@ class Toggle:
     Parameters
     ----------
     load : str or None
-        The load whose coordinate has an extreme value, so that its force there holds any other load.  None at
-        a branch point, where the mechanism may change to another motion (as with bars in line).
+        The load whose coordinate has an extreme value: there its force does no work, so that no other load is
+        needed to balance it, however large it is.  None at a branch point, where the mechanism may change to
+        another motion (as with bars in line).
     value : float
         Value of the driver's coordinate at the toggle position [m or rad].
     position : Position
@@ -228,7 +229,7 @@ def stroke(mechanism: Mechanism, driver: str, values: Sequence[float] | np.ndarr
     try:
         ends = (min(0.0, target.min()), max(0.0, target.max()))
         wanted = start.value[k] + np.append(target, ends)
-        # Wanted values are clipped: due to rounding the curve may end at a toggle position just before one.
+        # Wanted values are clipped: due to rounding the curve may end just before one, at a toggle position.
         within = nodes[0].value[k], nodes[-1].value[k]
         y = solve_at_values(system, nodes, k, np.clip(wanted, *within))
     except np.linalg.LinAlgError:

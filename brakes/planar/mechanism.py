@@ -198,7 +198,7 @@ _CLOSED = 1e-14  # gap of a closed joint due to rounding, over the length of the
 _TURN = 0.15  # largest angle between the tangents of neighbouring nodes [rad]
 _FIRST, _LARGEST, _LEAST = 0.02, 0.25, 1e-9  # steps along the curve, over the mechanism's length
 _NODES = 20_000
-_HALVINGS = 12  # bisections of a segment: finer than the distance of its cubic from the curve
+_HALVINGS = 12  # bisections of a segment; more would not help, as its cubic is only near the curve
 
 
 class Node(NamedTuple):

@@ -1,4 +1,4 @@
-"""Base classes of joints and loads: inputs, rows and drawings, and how to write a new kind.
+"""Base classes of joints and loads: inputs, rows (see `brakes.planar.rows`), drawings, and how to write one.
 
 In shapes of arrays, S counts positions.
 """
@@ -117,7 +117,7 @@ Other = Annotated[str, DescribedBody(meaning="other body; the ground if not give
 DrawnPoint = Annotated[Point, DescribedPoint("m", meaning="point in the drawing")]
 Direction = Annotated[Point, DescribedDirection(meaning="direction, as a vector or an angle")]
 Length = Annotated[float, Described("m", meaning="length, if not the drawing's", above=0)]
-_OPPOSES = "friction opposes the motion by itself; give its size"
+_OPPOSES = "friction opposes motion in either direction; give its absolute value"
 Coefficient = Annotated[float, Described("", "mu", "coefficient of friction", least=0, remedy=_OPPOSES)]
 _UNKNOWN = "or None for an unknown magnitude"
 _NEWTONS = Described("N", meaning="magnitude; unknown if not given", remedy=_UNKNOWN)
@@ -183,7 +183,7 @@ class Part:
     Raises
     ------
     ValueError
-        If an input is not as it is described.
+        If an input contradicts its description.
 
     Examples
     --------
@@ -309,7 +309,7 @@ class Joint(Part):
         return ()
 
     def size(self, multiplier: np.ndarray) -> np.ndarray:
-        """Compute the size of the joint's force from Lagrange multipliers (positions, its rows) [N, N m]."""
+        """Compute the size of the joint's force [N, N m] from its rows' multipliers (positions, rows)."""
         return multiplier[:, 0] if multiplier.shape[1] == 1 else np.hypot.reduce(multiplier, axis=1)
 
     def doubts(self, angles: Mapping[str, np.ndarray]) -> Iterator[str]:
@@ -366,7 +366,7 @@ class Load(Part):
         Raises
         ------
         ValueError
-            If the magnitude cannot be chosen, as of a spring.
+            If the magnitude cannot be chosen, as for a spring.
         """
         raise ValueError(f"load {self.name!r} is a spring: name a force, a moment or a cable pair")
 

@@ -5,10 +5,10 @@ on the bodies, for a unit multiplier (of a joint) or a unit magnitude (of a load
 
 - `is_couple`: whether it is a couple [N m] on an angle [rad], not a force [N] on a length [m];
 - `bodies` on which it acts, and `ends`, its points, from which the scales of the mechanism are set;
-- `add`, which evaluates all rows of this kind at once from columns, and `entries`, a row's values in these
-  columns after its index;
+- `add`, which evaluates all rows of this kind at once from columns of data, and `entries`, which returns the
+  data of one row for these columns, without the row's index;
 - `constant`: the part of its value that does not depend on the position, lengths divided by the mechanism's;
-- `effects`: forces and couples on a body for a size of the row, for free-body diagrams.
+- `effects`: forces and couples on a body for a given multiplier of the row, for free-body diagrams.
 
 In shapes of arrays, S counts positions, n bodies, and R rows.
 """
@@ -92,7 +92,10 @@ class Pose(NamedTuple):
 
 
 class Totals(NamedTuple):
-    """Value (rows, positions) of each row; its force (complex) and couple (rows, bodies, positions)."""
+    """Value (rows, positions) of each row; force (complex) and couple on each body for unit multipliers.
+
+    Forces and couples have the shape (rows, bodies, positions).
+    """
 
     value: np.ndarray
     force: np.ndarray
@@ -189,7 +192,7 @@ class Line(_AtPoint):
         totals.couple[row, frame] += np.where((frame == a)[:, None], 0.0, np.imag(normal.conj() * gap))
 
     def unit_force(self, place: Place) -> complex:
-        """Return the normal at a position, as a complex number: the force on the body of a unit row."""
+        """Return the normal at a position as a complex number: the force on the body for unit multiplier."""
         return complex(complex(*self.normal) * np.exp(1j * place.angle(self.frame)))
 
 

@@ -30,7 +30,7 @@ from brakes.planar.system import (
 
 _BALANCED = 1e-9  # largest residual of equilibrium that counts as zero, over the largest force
 _UNDETERMINED = 1e-7  # component of a self-stress above which a reaction counts as undetermined
-_BESIDE = 1e-2  # part of its length by which a mechanism is moved off a toggle, to test if it is held there
+_BESIDE = 1e-2  # step off a toggle position, over the mechanism's length, to test if it is held there
 _WEAK = 1e-5  # relative singular value below which the result counts as ill-conditioned
 
 
@@ -68,12 +68,13 @@ class Equilibrium:
     movable, loose : tuple of str
         Bodies that the joints let move, and bodies with uncontrolled motion, at any of the positions.
     undetermined : tuple of str
-        Reactions and amplitudes that equilibrium does not determine.
+        Joints and loads whose forces equilibrium does not determine.
     open_or_slack : tuple of str
         Contacts that would have to pull and cables that would have to push, at any of the positions.
     virtual_work : ndarray
-        Largest work of loads and friction in a free motion, over the largest force, without the reactions;
-        with mobility 0, the sum of forces or of moments that the ground receives, whichever is larger.
+        Largest virtual work of loads and friction in a free motion, over the largest force.  With mobility 0
+        there is no free motion: it is then the sum of all forces, or of all moments, on the ground, whichever
+        is larger, over the largest force.  In equilibrium it is zero up to rounding.
     residual : ndarray
         Largest residual force or moment on a body, over the largest force.
     error : ndarray
@@ -156,10 +157,11 @@ class Balance(NamedTuple):
 
 
 def solve(mechanism: Mechanism, position: Position | None = None) -> Equilibrium:
-    """Compute reactions and unknown amplitudes at one position or many.
+    """Compute the reactions of joints and the unknown magnitudes of loads, at one position or many.
 
-    The equations [J^T G][lambda; s] = -Q, 3 rows per body, are solved by singular value decomposition: J is
-    the gradient of the joints, G that of the loads of unknown amplitude, Q are the known loads.
+    The equations [J^T G][lambda; s] = -Q, 3 rows per body, are solved by singular value decomposition. J is
+    the gradient of the joints' constraints and lambda their multipliers, G the gradient of the coordinates of
+    loads with unknown magnitudes s, and Q the known loads.
 
     Parameters
     ----------
@@ -284,7 +286,7 @@ def collect_result(
 def _sizes(mechanism: Mechanism, rows: Rows, multiplier: np.ndarray) -> dict[str, dict[str, np.ndarray]]:
     """Collect forces by name, from the Lagrange multipliers (positions, rows) in scaled units.
 
-    They are reactions and force magnitudes of joints, amplitudes of loads, and friction forces [N, N m].
+    They are reactions and force magnitudes of joints, magnitudes of loads, and friction forces [N, N m].
     """
     system, physical = mechanism.system, multiplier * mechanism.system.unit
     reactions, magnitudes = {}, {}
@@ -377,7 +379,7 @@ def _verdict(
             sentence = Words(
                 "too near a toggle position to decide whether the loads are in balance: ",
                 how,
-                f" there, which only forces beyond all bounds could stop (smallest singular value "
+                f" there, which only infinitely large forces could stop (smallest singular value "
                 f"{margin:.1g}, at least {least:.1g} is needed); draw it further from that position, or give "
                 "no magnitude to a load that moves it",
             )
@@ -414,7 +416,7 @@ def _is_held_beside(position: Position, index: int, motion: np.ndarray, rank: in
 def combine(found: Sequence[tuple[str, str]]) -> tuple[str, str]:
     """Combine pairs of status and message, in order of decreasing severity, to one status and message."""
     if not found:
-        return "determined", "every reaction and amplitude is determined"
+        return "determined", "every reaction and load is determined"
     return found[0][0], joined("; ", (sentence for _, sentence in found))
 
 
@@ -422,7 +424,7 @@ class Action(NamedTuple):
     """A force or a couple that a joint or load exerts on a body.
 
     name : str
-        Name of the joint or load; "friction of" and the name for its friction.
+        Name of the joint or load; for friction, "friction of" and its name in `Mechanism.friction`.
     at : ndarray, shape (2,)
         Point of application [m]; nan for a couple.
     force : ndarray, shape (2,)

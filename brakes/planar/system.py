@@ -25,7 +25,7 @@ from brakes.planar.rows import GROUND, FrictionLaw, Point, Pose, Row, Totals
 # Rank, null spaces and least-squares solutions of many small matrices at once, by singular values --------
 
 
-RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0; toggle positions are solved to 1e-8
+RANK_TOLERANCE = 1e-7  # relative singular value that counts as 0: above the error of toggle positions, 1e-8
 
 
 class Decomposition(NamedTuple):
@@ -91,8 +91,8 @@ class Rows(NamedTuple):
     """Values and gradients of all rows at S positions.
 
     value : (S, R), lengths over the mechanism's length L, angles in rad.
-    force : (S, R, n + 1) complex, the force of a unit row on each body, the ground last.
-    couple : (S, R, n + 1), moment of a unit row about the body's centre, over L.
+    force : (S, R, n + 1) complex, the force on each body for a unit multiplier; the ground is last.
+    couple : (S, R, n + 1), the moment about each body's centre for a unit multiplier, over L.
     gradient : (S, R, 3 n), derivatives of the values with respect to y: the same forces, without the
     ground.
     """
@@ -135,7 +135,7 @@ class System:
     centre, radius : ndarray, shape (n + 1,)
         Centre (complex) of the points of each body, and their greatest distance l from it, over L.
     rounding : float
-        Relative rounding of coordinates, that of the input; it grows with the distance from (0, 0).
+        Relative rounding error of the coordinates, as they are given; it grows with the distance from (0, 0).
     constant : ndarray, shape (R,)
         Part of each row's value that does not depend on the position.
     unit : ndarray, shape (R,)

@@ -54,7 +54,7 @@ def compare_all(screen: Console, folder: Path) -> Sequence[Verdict]:
 
 
 def cells() -> list[Verdict]:
-    """Compare all numbers of the drum paper and of the forklift paper; return one cell for each."""
+    """Compare all numbers of the drum paper and of the forklift paper; return one `Cell` for each number."""
     return [cell for paper in _PAPERS for table in paper.tables().values() for cell in table.cells]
 
 

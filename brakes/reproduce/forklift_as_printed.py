@@ -182,7 +182,7 @@ def _vehicle_tables(solve: Callable[[Truck, StopConditions], Stop]) -> Tables:
 
 
 def inputs_of(name: str) -> dict[str, np.ndarray]:
-    """Return the values of a table's varied inputs by published keys; the input of the rows is first."""
+    """Return the values of a table's varied inputs by key in the published file, the rows' input first."""
     entries = load("yoo_1997")[name].items()
     varied = {key: entry for key, entry in entries if key != "padded" and "value" in entry}
     return {key: np.array(entry["value"]) for key, entry in varied.items()}
@@ -226,7 +226,7 @@ def errata() -> tuple[Erratum, ...]:
     unladen = [solve(*base_case(load_mass=0.0)).acceleration for solve in (stop_as_printed, stop)]
     truck, conditions, torque = right.truck, right.conditions, right.torque_per_brake
     mu, y, r1 = conditions.friction, truck.cg[1], truck.front_wheel_radius
-    # Torque by the paper over the right torque: its moments omit the brake torque, so that the arm is y_cg.
+    # Torque by the paper over the right torque: the paper's moments omit the brake torque (arm y_cg).
     ratio = (truck.wheelbase + mu * (y + r1)) / (truck.wheelbase + mu * y)
     missing = 1 - paper["reproduction"]["factor"]["value"]
     slower = right.acceleration - missing * (conditions.gravity * np.sin(conditions.slope))

@@ -2,7 +2,7 @@
 
 Let R be the braking force of all wheels along the ground, and W = M g cos(beta) the vehicle's force normal to
 it. The braking ratio is tau = R / W. With the centre of gravity at the height h, a behind the front axle and
-b before the rear axle, a + b = L, moments about where the tyres touch the ground give
+b before the rear axle, a + b = L, moments about the points where the tyres touch the ground give
 
     loads over W: (b + tau h) / L in front and (a - tau h) / L at the rear, if the front axle leads,
                   (b - tau h) / L in front and (a + tau h) / L at the rear, if the rear axle leads.
@@ -51,7 +51,7 @@ class Vehicle:
 
     References
     ----------
-    Standard (moments about where the tyres stand).
+    Standard: moments about the points where the tyres stand.
 
     Examples
     --------
@@ -75,7 +75,10 @@ class Vehicle:
         refuse(late, "cg_behind_front", a, "m", bound, limit=self.wheelbase, other="wheelbase")
 
     def arm(self, axle: Axle) -> Numbers:
-        """Return the distance [m] of the centre of gravity from the other axle, proportional to the load."""
+        """Return the distance [m] of the centre of gravity from the other axle.
+
+        The load of `axle` at rest on level ground is proportional to this distance.
+        """
         return self.wheelbase - self.cg_behind_front if axle == "front" else self.cg_behind_front
 
     def load_share(self, axle: Axle, ratio: Numbers, leading: Axle) -> Numbers:

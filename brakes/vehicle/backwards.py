@@ -39,7 +39,7 @@ class Needed(Result):
     Attributes
     ----------
     value : ndarray
-        The unique value that gives the output, in the unit of SI; nan if there is none.
+        The unique value that gives the output [SI unit]; nan if there is none.
     reason : str or ndarray of str
         Why there is no value; empty if there is one.
 
@@ -102,7 +102,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
 
     References
     ----------
-    Standard (moments), solved for the friction, as in the docstring of the module.
+    Standard: equilibrium of moments, solved for the friction, as in the docstring of the module.
 
     Examples
     --------

@@ -41,8 +41,8 @@ class Braking(Result):
     largest : ndarray
         Largest braking ratio, with these shares, at which no wheel locks or lifts.
     first : str or ndarray of str
-        Limit of `largest`: ``"front"`` or ``"rear"`` for the axle that locks first, ``"both"`` at once, or
-        ``"pitching over"``.
+        What limits `largest`: ``"front"`` or ``"rear"``, the axle that locks first; ``"both"`` if they lock
+        together; or ``"pitching over"``.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def braking_limits(
 
     References
     ----------
-    Standard (moments about where the tyres stand): the docstring of `brakes.vehicle.axles`.
+    Standard: moments about the points where the tyres stand; see the docstring of `brakes.vehicle.axles`.
 
     Examples
     --------

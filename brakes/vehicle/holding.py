@@ -3,9 +3,9 @@
 The braking ratio is tau = tan(beta), see `brakes.vehicle.axles`. The vehicle slips past tan(beta) =
 `slipping_ratio`, tips over the lower axle past tan(beta) = `pitching_ratio` if that axle is braked, and rolls
 past sin(beta) = R / (M g) if its brakes give the force R along the ground. A vehicle that does not hold moves
-down with the smaller of the braking ratios of road and brake, `slipping_ratio` and R / (M g cos(beta)), on
-which the axle loads depend; past `pitching_ratio` it tips. If only the upper axle is braked, it loses its
-load, and so its grip, before the vehicle could tip.
+down the slope. Its braking ratio, on which the axle loads depend, is then the smaller of that of the road,
+`slipping_ratio`, and that of the brakes, R / (M g cos(beta)); past `pitching_ratio` it tips. If only the
+upper axle is braked, it loses its load, and so its grip, before the vehicle could tip.
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ def hold(
 
     References
     ----------
-    Standard (moments about where the tyres stand): the docstring of `brakes.vehicle.axles`.
+    Standard: moments about the points where the tyres stand; see the docstring of `brakes.vehicle.axles`.
 
     Examples
     --------

@@ -7,8 +7,9 @@ cos(beta), and the loads of the front and rear axle n_f and n_r, as fractions of
     tau = min(phi B / W, mu n_f(tau)) + min((1 - phi) B / W, mu n_r(tau)).
 
 Each minimum is of functions that are linear in tau, so that the right side is concave, and it is positive at
-tau = 0: it equals tau once, at the least of the four ratios that the sums of these functions give. The driver
-eases off where the vehicle would pitch over. All this holds uphill and downhill: weight and inertia act at
+tau = 0: it equals tau at one value only. With one of the two functions for each axle there are four sums, and
+each sum equals tau at some value; the solution is the least of these four values. The driver eases off where
+the vehicle would pitch over. All this holds uphill and downhill: weight and inertia act at
 the centre of gravity. `brakes.vehicle.rise` has the motion to rest. Until the brakes act the vehicle coasts:
 it gets faster downhill and slower uphill in the driver's reaction time.
 """
@@ -153,7 +154,7 @@ class Slowing(Result):
         held = self.ratio * np.cos(self.road.slope) * risen
         rolls = (a.heading == "uphill") & (held < np.sin(self.road.slope) * (1 - _EDGE))
         many = f", in {np.sum(rolls)} of {rolls.size} cases" if rolls.ndim else ""
-        said = "it stands before its brakes hold it, and rolls back until they do; the rolling is not counted"
+        said = "the vehicle stops before its brakes hold it, and rolls back until they do (not counted)"
         return (f"{said}{many}",) if np.any(rolls) else ()
 
     @property
@@ -198,7 +199,8 @@ def slow_down(
 
     References
     ----------
-    Standard (moments about where the tyres stand, and constant forces): the docstring of the module.
+    Standard: moments about the points where the tyres stand, and motion under constant forces; see the
+    docstring of the module.
 
     Examples
     --------

@@ -149,7 +149,7 @@ class Stop(Result):
     ... )
     >>> steep = np.radians(27.0)
     >>> conditions = vehicle.StopConditions(steep, 20 / 3.6, 0.7, reaction_time=0.5, rise_time=0.3)
-    >>> bool(vehicle.stop(truck, conditions).stops)  # on 27 deg it does not
+    >>> bool(vehicle.stop(truck, conditions).stops)  # not on a slope of 27 deg
     False
     """
 
@@ -186,7 +186,7 @@ class Stop(Result):
 
     @property
     def limited_by(self) -> Any:
-        """The limit of the braking force: "road" where the front wheels lock, else "brake"."""
+        """What limits the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
         return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
 
@@ -226,7 +226,10 @@ class Stop(Result):
         return _SENTENCES[str(self.status)]
 
     def messages_of_cases(self, count: int) -> dict[int, str]:
-        """Return the message of each case that does not stop, by its index; `count` is their number."""
+        """Return the message of each case that does not stop, by its index.
+
+        `count` is the number of all cases.
+        """
         each = np.broadcast_to(self.status, (count,)).tolist()
         return {i: _SENTENCES[status] for i, status in enumerate(each) if not status.startswith("stops")}
 
@@ -238,11 +241,11 @@ _SENTENCES = {
     "stops": "the truck stops",
     "stops in the rise time": "the truck stops while the brake force is still rising",
     "never stops": "the locked front wheels hold less than the slope pulls: the truck never stops; "
-    "less slope, more friction, or another load",
+    "take less slope, more friction, or another load",
     "brakes too weak": "the brakes hold less than the slope pulls, though the road would hold more: the "
     "truck never stops; press harder, or take stronger brakes",
     "too near to decide": "does not stop: the slope is too near the steepest on which locked front wheels "
-    "hold the truck; less slope, more friction, or another load",
+    "hold the truck; take less slope, more friction, or another load",
 }
 
 

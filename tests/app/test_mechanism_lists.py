@@ -103,7 +103,7 @@ def test_at_each_step_advice_says_what_is_missing():
         "Nothing holds handle",
         "Add a force",
         "without magnitude: 0",
-        "To see it move",
+        "To see the mechanism move",
     )
     for sentences, word in zip(said, words, strict=False):
         assert any(word in sentence for sentence in sentences), (word, sentences)

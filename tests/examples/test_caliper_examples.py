@@ -15,7 +15,7 @@ FILES = sorted((Path(__file__).parents[2] / "examples" / "calipers").glob("*.tom
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_example_runs(path, finished):
     out, err = finished(main(["caliper", str(path)]), 0)
-    assert err == "" and "every reaction and amplitude is determined" in out
+    assert err == "" and "every reaction and load is determined" in out
 
 
 def test_each_named_caliper_has_an_example():

@@ -226,17 +226,17 @@ def test_what_limits_a_forklift_is_said_in_its_tables(run, forklift):
     _, out, _ = run("forklift", forklift)
     said = " ".join(out.split())
     assert "the torque is from the road, on locked wheels" in said
-    assert "of their friction 0.3903 the locked wheels use 0.3626" in said
+    assert "the locked wheels use 0.3626 of their friction 0.3903" in said
     assert row(out, "pressure of the line there")[0] == "14.715"
-    assert row(out, "... if the slope pulls while the brake force rises")[0] == "15.054"
+    assert row(out, "stopping distance if the slope also pulls while the brake force rises")[0] == "15.054"
     _, out, _ = run("forklift", forklift, ("booster = 3", "booster = 2.2"))
     assert "the torque is from the pedal" in out and "sliding" not in out.partition("From the pedal")[0]
-    assert "friction of the linings, which limit it, -+10 %: " in " ".join(out.split())
+    assert "friction of the linings (the brakes limit the stop) -+10 %: " in " ".join(out.split())
 
 
 def test_what_limits_a_parked_vehicle_is_said_where_its_tyres_do_not(run, truck):
     _, out, _ = run("vehicle", truck)
-    said = "the vehicle rolls, 14.606 deg; friction of tyres on the road -+10 %: no change, as something"
+    said = "the vehicle rolls) 14.606 deg; friction of tyres on the road -+10 %: no change, as something"
     assert said in " ".join(out.split())
 
 
@@ -247,7 +247,8 @@ def test_a_vehicle_that_rolls_back_before_its_brakes_act_is_said(run):
     late = (uphill[0], uphill[1] + '\nreaction_time = "12 s"')
     text = (EXAMPLES / "bicycle.toml").read_text()
     _, _, err = run("vehicle", "".join(x for x in text.splitlines(True) if "reaction_time" not in x), late)
-    assert "front axle leading: it stands before its brakes hold it, and rolls back" in " ".join(err.split())
+    said = "front axle leading: the vehicle stops before its brakes hold it, and rolls back"
+    assert said in " ".join(err.split())
 
 
 def test_a_slope_in_percent_has_its_bound_in_percent(run):

@@ -152,7 +152,7 @@ friction_curve = [["20 degC", 0.2], ["60 degC", 0.15]]
             NO_ANSWER,
             "stop 2 of 3: the brake gets hotter than the last temperature of friction_curve",
         ),
-        (("stops = 3", 'load_torque = "700 N m"'), NO_ANSWER, "the brake gives less than load_torque"),
+        (("stops = 3", 'load_torque = "700 N m"'), NO_ANSWER, "load_torque or a slope exceeds the brake"),
         (
             ('"20 degC", 0.2', '"20 degC", 0.19'),
             NO_ANSWER,

@@ -51,7 +51,7 @@ P, Q = (0.0, 0.0), (1.0, 0.0)
         (lambda: TorsionSpring("coil", "arm", -1, 0), "torsion spring 'coil': stiffness = -1 N m/rad"),
         (
             lambda: Pin("pivot", "arm", GROUND, P, radius=1, friction=-0.1),
-            "pin 'pivot': friction = -0.1: .*its size",
+            "pin 'pivot': friction = -0.1: .*its absolute value",
         ),
         (lambda: Pin("pivot", "arm", GROUND, P, radius=-1), "pin 'pivot': radius = -1 m"),
         (
