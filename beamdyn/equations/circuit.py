@@ -13,9 +13,10 @@ theta^T / Cp.  For a short circuit, v = 0.  Otherwise the circuit has a coordina
 - the **charge** Q that has flown, v = -(Q + theta^T q)/Cp: resistance R, stiffness 1/Cp, no mass; the
   stiffness stays positive definite, for linear models.
 
-Neglected modes respond quasi-statically to a voltage, by their residual flexibility g = K^-1 theta beyond
-the modes (Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4): the capacitance of
-the reduced model is Cp + theta^T g.
+Modes that a reduced model neglects respond quasi-statically to a voltage.  Their deflection under a unit
+voltage, the residual flexibility g, is K^-1 theta minus the contribution of the retained modes (Craig and
+Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).  The capacitance of the reduced model is
+Cp + theta^T g.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ class FewerAcross:
         return None if finer is None else FewerAcross(finer)
 
     def fits(self, modes: int) -> bool:
-        """Return whether even the coarser discretization has enough functions for a number of modes."""
+        """Return whether both this discretization and `coarser` have enough functions for so many modes."""
         return self.whole.fits(modes)
 
 
@@ -86,9 +86,10 @@ class SpacesOfFewer:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+        """Integrate a weight times derivatives of two functions over x/L, for all pairs of functions.
 
-        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        The rows of the result are functions with the root conditions `rows`, its columns are functions with
+        the root conditions `columns`; `orders` are the orders of the two derivatives.
         """
         return self.whole.product(weight, rows, columns, orders)
 

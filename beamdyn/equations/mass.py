@@ -95,9 +95,10 @@ def gram_by_mass(beam: Beam, space: Space) -> np.ndarray:
 
 
 def product_by_mass(beam: Beam, spaces: Spaces, rows: RootConditions, columns: RootConditions) -> np.ndarray:
-    """Integrate products of two functions, weighted by the mass [kg], for each function of two sets.
+    """Integrate products of two functions, weighted by the mass [kg], for all pairs of functions.
 
-    `rows` and `columns` are the root conditions of the two sets.
+    The rows of the result are functions with the root conditions `rows`, its columns are functions with the
+    root conditions `columns`.
     """
     of_sections = spaces.product(beam.mass_per_length, rows, columns) * beam.length
     return of_sections + product_at_lumps(beam, spaces.functions(rows), spaces.functions(columns))

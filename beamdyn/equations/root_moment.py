@@ -157,7 +157,7 @@ def static_moment(
 def _freed(scene: Scene, discretization: Discretization, direction: int) -> Equations:
     """Assemble the equations of the scene with a root that rotates freely in one direction."""
     hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
-    local = replace(scene.damping, ratios=())  # modal damping does no work on the test function
+    local = replace(scene.damping, ratios=())  # leave out modal damping: it does no work on the test function
     freed = replace(scene, damping_ratio=0.0, damping=local, mount=replace(scene.mount, **hinges))
     return assemble_over(freed, discretization.spaces(scene.modelled_beam))
 

@@ -34,7 +34,8 @@ class RootMotion:
         Acceleration c a_O2 + s a_O3 of the root in the direction of bending, minus gravity [m/s2]; c and s
         are the cosine and sine of the bending angle.
     root_across : ndarray
-        Acceleration c a_O3 - s a_O2 of the root perpendicular to both, minus gravity [m/s2].
+        Acceleration c a_O3 - s a_O2 of the root perpendicular to the beam and to the direction of bending,
+        minus gravity [m/s2].
 
     Directions are the axes of the beam, which the precone inclines.
     """

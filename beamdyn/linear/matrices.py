@@ -193,7 +193,8 @@ def matrices(
     Raises
     ------
     ValueError
-        If an argument is out of its range, or an input is periodic at this speed.
+        If an argument is out of its range, or an input in a fixed direction acts on the rotating beam, so
+        that the input matrix would vary.
 
     References
     ----------
@@ -271,8 +272,8 @@ def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
     An excitation of fixed direction is refused, because its input matrix would vary as the beam turns.
     """
     drives = model.drives(excitation)
-    bound = "on the rotating beam its input matrix varies: it acts at its frequency plus and minus the speed"
-    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts it'
+    bound = "the input matrix would vary, as the load has the input's frequency plus and minus the speed"
+    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts this input'
     refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
     return drives[0]
 

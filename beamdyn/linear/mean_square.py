@@ -95,7 +95,7 @@ class PartialFractions:
     def mean_square_of_white(self, density: float) -> float:
         """Compute the mean square for a constant one-sided density at all frequencies.
 
-        It leaves out the direct term, which would make it infinite.
+        The direct term is left out, as it would make the mean square infinite.
         """
         proper = PartialFractions(0.0, self.residues, self.poles)
         return density / 2 * float(np.real(proper.of_square.sum()))
@@ -253,7 +253,7 @@ class ParametricTerm:
         if self.by_gravity > _LARGE:
             yield (
                 f"gravity along the beam varies the lowest squared frequency by {self.by_gravity:.1%} "
-                "within a turn, which is left out"
+                "within a turn; the linear model leaves this out"
             )
 
 

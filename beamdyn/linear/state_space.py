@@ -106,8 +106,8 @@ def state_space(
     Raises
     ------
     ValueError
-        If an argument is out of its range, an input is periodic at this speed, or a retained coordinate has
-        no mass.
+        If an argument is out of its range, an input in a fixed direction acts on the rotating beam, so that
+        the matrix B would vary, or a retained coordinate has no mass.
 
     References
     ----------

@@ -183,9 +183,10 @@ class CutSpaces:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+        """Integrate a weight times derivatives of two functions over x/L, for all pairs of functions.
 
-        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        The rows of the result are functions with the root conditions `rows`, its columns are functions with
+        the root conditions `columns`; `orders` are the orders of the two derivatives.
         """
         return self.functions(rows).product(self.functions(columns), weight, orders)
 

@@ -400,7 +400,10 @@ class Page:
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)
         typed, designs = stored.get("typed", {}), stored.get("designs", {})
-        for name, work in self.works.items():  # unfinished input is restored before any design is stored
+        for (
+            name,
+            work,
+        ) in self.works.items():  # restore unfinished texts first: storing a design would drop them
             entries = designs.get(name, work.document.base_entries)
             if work.recall(read_typed(typed.get(name), entries, work.document.inputs(entries))):
                 self._rebuild(work.document)

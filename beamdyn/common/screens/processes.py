@@ -374,7 +374,7 @@ _INTERRUPTS = _Interrupts()
 def serve_tasks(caller: int) -> None:
     """Run tasks that arrive on standard input; end when the calling process ends, even within a task."""
 
-    def end_with_caller() -> None:  # the end of standard input would be noticed only between two tasks
+    def end_with_caller() -> None:  # in a thread: a running task does not notice the end of standard input
         while os.name == "nt" or os.getppid() == caller:  # on Windows the parent's id never changes
             sleep(1.0)
         os._exit(1)

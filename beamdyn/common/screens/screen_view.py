@@ -200,7 +200,7 @@ class ScreenView:
         elif self._sketch is not None and path in self._choices:
             self._sketch.show(self.work.entries)
         self.form.hide(self.work.idle)
-        self._previews = self._drawn  # delays rendering of the page: the picture appears sooner
+        self._previews = self._drawn  # if True, the page is rendered later, and the picture appears sooner
         self.solve(held=self._holds)
         if not self._holds:  # while a slider is held, texts are neither stored nor reported to other screens
             self._edited()
@@ -319,7 +319,7 @@ class ScreenView:
             return self.solve()
         self.state()
         if not self.dragged:
-            self._writer.synchronize()  # here, so that the page is rendered only once
+            self._writer.synchronize()  # after all changes, so that the page is rendered only once
             self._edited()
 
     def _fail(self, error: Exception) -> None:
@@ -399,7 +399,7 @@ class ScreenView:
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
             toggle(self._tables, "waits", not answered.is_whole)
-            self.state()  # inside this context, so that its changes are reported together with the others
+            self.state()  # within `writing`, so that its changes are sent to the page with the others
         if self._drawn_of != self._to_draw(answered):
             self._draw()
         if answered.picture:

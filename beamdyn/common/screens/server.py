@@ -82,7 +82,7 @@ class RequestGuard:
         if not refusal and (known or (is_page and path == "/" and scope["method"] == "GET")):
             await self.app(scope, receive, send)
         elif is_page:
-            sentence = refusal or "There is no such page; the program's only one is at /."
+            sentence = refusal or "There is no such page; the program's only page is at /."
             await PlainTextResponse(f"{sentence}\n", 403 if refusal else 404)(scope, receive, send)
         else:
             # A websocket that is closed before it is accepted gets the status 403.

@@ -111,7 +111,7 @@ class SweepPanel:
                     take = partial(self._download, kind.lower())
                     ui.button(f"Sweep as {kind}", icon="download", on_click=take).props("flat no-caps")
             self._said: Any = ui.label().props('role="alert"').style("white-space: pre-line")
-            self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
+            self._late: Any = ui.label("This sweep is outdated: an input has changed.").classes("status")
             self._good: Any = ui.element("div").classes("w-full")
             with self._good:
                 self._charts = ChartBoard(f"{screen.name}: charts of the sweep", PageWriter())

@@ -155,7 +155,7 @@ class Spread(Result):
 
 
 def _digits_of(low: float, high: float) -> int:
-    """Return the number of digits that shows both ends of a range to some percent of its width."""
+    """Return the number of significant digits that shows the ends of a range to some percent of its width."""
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = 2 + np.log10(np.divide(max(abs(low), abs(high)), high - low))
     return int(np.clip(needed, _DIGITS, _MOST_DIGITS)) if np.isfinite(needed) else _DIGITS

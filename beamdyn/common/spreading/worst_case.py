@@ -217,7 +217,7 @@ def _widened(corner: _Case, best: _Case) -> _Case:
 def _search(
     start: _Case, rows: np.ndarray, ends: tuple[np.ndarray, np.ndarray], answer: Answer, most: int
 ) -> tuple[_Case, np.ndarray, int]:
-    """Improve S designs (S, d) by as many searches at once.
+    """Improve each of S designs (S, d) by a search of its own; all searches advance together.
 
     A search with the number 2 i in `rows` (S,) minimizes result i, one with 2 i + 1 maximizes it.
 

@@ -289,7 +289,10 @@ class BentBeam(FieldsOnly):
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, sections) from `rates` and `bending`, rates of curvatures."""
+        """Compute angular velocities (..., 3, sections) of the sections.
+
+        `rates` are the rates of the coordinates, `bending` (..., 3, points) the rates of the curvatures.
+        """
         turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
         return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 
@@ -317,7 +320,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
-        """Derivatives of the axis displacements along the axis, per coordinate: (coordinates, 3, points)."""
+        """Derivatives along the axis of its displacement per unit of each coordinate: (n, 3, points)."""
         rates = cross(self._turned[..., :-1], self.tangents)
         return rates + self._strained[0] if self.beam.shears else rates
 

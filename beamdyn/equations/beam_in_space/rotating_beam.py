@@ -97,12 +97,12 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         component, order, conditions = known[name]
         of_field, sign = spaces.functions(conditions), _SIGNS[component]
         functions[place, component] = sign * of_field.evaluate(xi, order) / beam.length**order
-        if order == 2:  # functions of a field of bending may rotate the root
+        if order == 2:  # a field of bending, whose functions may rotate the root
             at_root, *turned = of_field.evaluate(np.array([0.0, *xi, 1.0]), 1).T / beam.length
             hinges[place, component - 3] = sign * at_root
             slopes[place] += (sign > 0) * np.array(turned).T
     if beam.matrices is None:
-        # Stretch is added to bending, so that the lines through the centres of tension keep their lengths.
+        # Functions of bending also stretch the axis, so that the line of centres of tension keeps its length.
         offset, across = _tension(beam, xi)
         functions[:, 0] += offset * functions[:, 5] - across * functions[:, 4]
     curvature, kinks = curve_of_axis(beam, quadrature)
@@ -153,7 +153,8 @@ def _with_damping(rotating: RotatingBeam, scene: Scene) -> RotatingBeam:
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
     """Compute strains (6, n, 6, points) by six forces and moments, each varying along x as n polynomials do.
 
-    The polynomials describe components in the axes at the root, which are smooth over the beam; components in
+    The first axis counts forces and moments, the second the polynomials, and the third the strains.  The
+    polynomials describe components in the axes at the root, which are smooth over the beam; components in
     section axes rotate with the axis of the beam.
     """
     xi, unloaded = model.stations.quadrature.xi, model.at(np.zeros(model.size)).rotations[..., :-1]
@@ -325,8 +326,8 @@ class BentState(FieldsOnly):
     def under(self, values: Mapping[Quantity, float]) -> bent_beam.Work:
         """Compute the virtual work of inertial forces for given quantities of root motion (cached).
 
-        If "unity" is given, that fraction of the tip load acts in place of inertial forces.  Signs are as on
-        the left-hand side of the equations of motion.
+        If `values` has a number for "unity", this number times the tip load acts in place of inertial forces.
+        Signs are as on the left-hand side of the equations of motion.
         """
         key = tuple(values.items())
         if key not in self._known:
@@ -342,7 +343,7 @@ class BentState(FieldsOnly):
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
         """Compute the forces at the stations for given quantities of root motion: the inertial forces.
 
-        If "unity" is given, return minus that fraction of the tip load instead.
+        If `values` has a number for "unity", return minus this number times the tip load instead.
         """
         if "unity" in values:
             assert self.of.load is not None

@@ -14,10 +14,10 @@ its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  Th
 In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r,
 with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
 are the work of this acceleration, for a mass at c, on these displacements.  Second moments about the axis are
-part of the inertia tensors (`beamdyn.scene.sections`, `TipMass.about`).  Neglected are products of tilt and
-twist with them, and Coriolis and Euler forces of a tilt, which displaces the mass along the beam: these
-change frequencies by about the square of c/L.  In the inertia of tilting, the line of centres of tension is
-straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
+part of the inertia tensors (`beamdyn.scene.sections`, `TipMass.about`).  Two effects are neglected, which
+change frequencies by about the square of c/L: products of tilt, twist and these second moments; and Coriolis
+and Euler forces of a tilt, which displaces the mass along the beam.  In the inertia of tilting, the line of
+centres of tension is straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
 """
 
 from __future__ import annotations
@@ -154,13 +154,13 @@ class SectionMotion:
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
     """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4).
 
-    Rows and columns are as in `SectionMotion.beside`.
+    The axes of the result are those of `SectionMotion.beside`: directions, and components of the offsets.
     """
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
         moved[1, _C] = moved[2, _C + 1] = -1.0
-    elif _TURN in (i, j):  # the displacement is -K c along the beam, with the offset c of the mass centre
+    elif _TURN in (i, j):  # the displacement along the beam is -theta p.K c, as in the module's docstring
         tilt = min(i, j)
         moved[0, _C + 1 - tilt] = 2.0 * tilt - 1.0
     else:
@@ -495,5 +495,5 @@ class Offsets:
             yield quantity, motion.on_axis @ matrix, 0
 
     def _load(self, weight: Profile, conditions: RootConditions, order: int) -> np.ndarray:
-        """Integrate a weight times x derivatives of n functions with given root conditions: shape (n,)."""
+        """Integrate a weight times the `order`-th x derivative of n functions with these conditions: (n,)."""
         return self.spaces.functions(conditions).load(weight, order) * self.scene.beam.length ** (1 - order)

@@ -219,7 +219,7 @@ _SOME_RATIO = 0.3  # Poisson's ratio in the list of all terms, if none is given
 _IS_TWISTED = Condition(lambda s: s.scene.modelled_beam.twist is not None, "the beam is not twisted")
 _IS_OBLIQUE = Condition(
     lambda s: _IS_TWISTED.is_met(s) or min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
-    "the strip stands along or across the plane of rotation",
+    "the strip is parallel or perpendicular to the plane of rotation",
 )
 
 
@@ -230,7 +230,10 @@ class SectionField(Field):
     first: ClassVar[int]
 
     def complete(self, scene: Scene) -> Scene:
-        """Return the scene with this field; a rectangular section gets Poisson's ratio, and no twist."""
+        """Return the scene with this field; unchanged if the section is not rectangular.
+
+        A section without Poisson's ratio gets one, and the twist is removed.
+        """
         section = scene.beam.section
         if section is None:
             return scene
@@ -340,7 +343,7 @@ class Torsion(SectionField):
             "-ω² c s Qk", "rotation turns the strip into its plane", (why.TURNS, _IS_OBLIQUE)
         ),
         "untwisting by tension": Explanation(
-            "ω² NB r² β' θ'", "tension pulls straight the fibres of a twisted beam", (why.TURNS, _IS_TWISTED)
+            "ω² NB r² β' θ'", "tension straightens the fibres of a twisted beam", (why.TURNS, _IS_TWISTED)
         ),
         **EXPLANATIONS,
     }
