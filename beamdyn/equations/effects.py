@@ -60,7 +60,10 @@ class Effect:
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:
-        """Return whether a scene's model neglects the effect; twist and offsets only if the beam has them."""
+        """Return whether a scene's model neglects the effect.
+
+        Twist and given offsets count as neglected only if the beam has them.
+        """
         has = {
             TWIST: scene.beam.is_twisted,
             OFFSETS: scene.beam.has_offsets,

@@ -249,7 +249,7 @@ class FemSpace(FieldsOnly):
 
     @property
     def coarse(self) -> None:
-        """None: no subset of the functions spans a coarser mesh, whose functions are linear combinations."""
+        """None: functions of a coarser mesh are linear combinations of these functions, not a subset."""
         return None
 
     def weights(self, weight: Profile) -> np.ndarray:

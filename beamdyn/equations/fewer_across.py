@@ -11,7 +11,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
 _FEWER = 2  # number of functions across the width that are left out: one of torsion, one of camber
-_LEAST = 2  # smallest number of functions across the width
+_LEAST = 2  # smallest number of functions across the width that remain
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,7 @@ class FewerAcross:
 
 @dataclass(frozen=True)
 class SpacesOfFewer:
-    """Function spaces like others, but with two functions fewer across the width of a plate.
+    """Function spaces like given ones, but with two functions fewer across the width of a plate.
 
     Parameters
     ----------

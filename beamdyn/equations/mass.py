@@ -82,7 +82,10 @@ class PiecewisePolynomials:
         return np.concatenate([hats, *on_parts])
 
     def phases(self, left: np.ndarray, right: np.ndarray, number: int) -> np.ndarray:
-        """Compute the phase change [rad] of the oscillating polynomial of highest degree over given cells."""
+        """Compute the phase change [rad] of the polynomial of highest degree over each of given cells.
+
+        The polynomial oscillates like the cosine of this phase.
+        """
         part, ends = self._part((left + right) / 2), np.array(self.ends)
         start, length = ends[part], np.diff(ends)[part]
         first, last = (np.arccos(np.clip(1 - 2 * (x - start) / length, -1, 1)) for x in (left, right))

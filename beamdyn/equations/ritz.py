@@ -155,7 +155,7 @@ class RitzSpaces(SampledSpaces):
 
     @property
     def fewer_across(self) -> int:
-        """Number of functions across the width in the coarser basis: one of torsion and of camber less."""
+        """Number of functions across the width in the coarser basis: two fewer, but at least 2."""
         return max(2, self.across - 2)
 
     def shares_functions(self, other: RitzSpaces) -> bool:

@@ -199,7 +199,10 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
 
 
 def _embed(full: Equations, equations: Equations) -> np.ndarray:
-    """Compute the matrix that transforms coordinates of `equations` to those of `full`, with a free root."""
+    """Compute the matrix that transforms coordinates of `equations` to those of `full`.
+
+    `full` are the equations in all functions, for a root that rotates freely.
+    """
     kept = np.zeros((full.size, equations.size))
     for name, shape in equations.shapes.items():
         end = full.blocks[name].stop

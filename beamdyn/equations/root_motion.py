@@ -14,7 +14,7 @@ from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 Quantity = Literal[
     "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
 ]
-_UNIT_SPEED = MotionSample.steady(1.0)  # the carrier rotates at 1 rad/s
+_UNIT_SPEED = MotionSample.steady(1.0)  # motion of a carrier that rotates at 1 rad/s
 CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
 
 

@@ -142,7 +142,7 @@ def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, co
         return np.zeros(1)
     if given is None or len(given) != count:
         found = "none" if given is None else str(len(given))
-        said = f"expected a column 'speed [rpm]' or {count} speeds with the file, found {found}"
+        said = f"expected a column 'speed [rpm]' or {count} speeds given with the file, found {found}"
         raise text.refusal(1, said)
     return given
 

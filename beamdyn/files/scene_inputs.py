@@ -28,7 +28,7 @@ from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.section_matrices import UPPER, SectionMatrices, entry_name, entry_units
 
-Along = float | Polynomial | Table  # a property that varies along the beam
+Along = float | Polynomial | Table  # a property along the beam: number, polynomial in x/L or table
 
 
 class Metres(float):

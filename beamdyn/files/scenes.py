@@ -158,7 +158,7 @@ def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[s
 
 
 class RecordedQuantity(Quantity):
-    """A number in a recorded time series, whose unit conversion is computed only once."""
+    """A quantity in a recorded time series; the conversion of a unit is computed once for all numbers."""
 
     def parse(self, given: object) -> float:
         """Convert a number with a unit to SI units."""

@@ -79,7 +79,8 @@ def model_at_speed(
 ) -> ModelAtSpeed:
     """Build the linear model of a scene with a number of modes.
 
-    Trial functions are chosen by the modes of the undamped beam.  For the tolerance see `natural_modes`.
+    Trial functions are chosen to resolve the modes of the undamped beam.  For the tolerance see
+    `natural_modes`.
 
     Raises
     ------

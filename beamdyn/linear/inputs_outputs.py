@@ -24,7 +24,7 @@ BaseDirection = Literal["bending", "across", "n1", "n2", "n3"]
 _FIXED: tuple[str, ...] = ("n1", "n2", "n3")
 _ROTATING: dict[str, Quantity] = {"bending": "root_transverse", "across": "root_across"}
 _ACCELERATIONS: tuple[Quantity, ...] = ("root_axial", "root_transverse", "root_across")
-_NEGLIGIBLE = 1e-15  # component of a unit acceleration that is 0 within rounding
+_NEGLIGIBLE = 1e-15  # size up to which a component of a unit acceleration counts as 0
 
 Accelerations: TypeAlias = "dict[Quantity, complex]"  # accelerations of the root, per unit of the input
 

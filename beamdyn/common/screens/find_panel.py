@@ -40,7 +40,7 @@ class FindPanel:
     def __init__(self, work: OpenDocument, screen: Screen, backwards: Backwards, solver: RunsTasks) -> None:
         self.work, self.screen, self.backwards, self._solver = work, screen, backwards, solver
         self._way = LatestComputation(self._settle, self._fail, self._tell)
-        self._asked: Entries | None = None  # texts of the form when the last search was started
+        self._asked: Entries | None = None  # texts of the form's fields when the last search was started
         self._units: dict[str, str] = {}  # unit of each available result, by its name
         self._fold: Any = ui.expansion("Find an input", on_value_change=self.state)
         with self._fold.classes("w-full section").props("dense"):
@@ -67,7 +67,7 @@ class FindPanel:
             return
         needed = self.work.needed(self.screen)
         self._offer(self._input, [*inputs_with_value(self.work, self.screen)])
-        with suppress(ConfigError):  # the screen itself shows the error
+        with suppress(ConfigError):  # an error in the design, which the screen itself shows
             self._units = dict(self.backwards.units(tables_of(needed, self.work.inputs)))
             self._offer(self._result, [*self._units])
             self._name_unit()

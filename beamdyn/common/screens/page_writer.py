@@ -31,7 +31,7 @@ class PageWriter:
 
     @property
     def is_ahead(self) -> bool:
-        """Return whether something is held, or NiceGUI has not yet received all changes."""
+        """Return whether a handle or slider is held, or NiceGUI has not yet received all changes."""
         return self._held() or bool(self._untold)
 
     @contextmanager
@@ -62,7 +62,7 @@ class PageWriter:
             self.synchronize()
 
     def tell_later(self, element: Any) -> None:
-        """Report a changed element to NiceGUI once nothing is held."""
+        """Report a changed element to NiceGUI once no handle or slider is held."""
         self._untold[element.id] = element
 
     def synchronize(self) -> None:

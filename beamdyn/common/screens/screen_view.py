@@ -304,7 +304,7 @@ class ScreenView:
         if last:
             self.board.forget_steps()
         is_part = False
-        # A preliminary result keeps the tables shown before.
+        # With a preliminary result, the tables of the result before stay on the page.
         if isinstance(outcome, ShownAnswer) and not outcome.is_whole:
             is_part, kept = True, before or outcome
             outcome = replace(outcome, tables=kept.tables, notes=kept.notes, rest=kept.rest)

@@ -181,8 +181,8 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             language="en-US",
             show=browser,
             reload=False,
-            tailwind=False,  # Tailwind would scan the page after each change
-            # Compression would delay each message, and gains little within one computer.
+            tailwind=False,  # the CSS framework Tailwind would scan the page after each change
+            # No compression: it would delay each message, and gains little within one computer.
             ws_per_message_deflate=False,
             reconnect_timeout=30.0,
         )

@@ -122,7 +122,7 @@ class SweepPanel:
             return
         paths, needed = [*self._inputs()], self.work.needed(self.screen)
         self._input.set_options(paths, value=self._input.value if self._input.value in paths else paths[0])
-        with suppress(ConfigError):  # the screen itself shows the error
+        with suppress(ConfigError):  # an error in the design, which the screen itself shows
             names = [*self.sweeps.names(tables_of(needed, self.work.inputs))]
             kept = [name for name in self._results.value if name in names]
             self._results.set_options(names, value=kept or names[:1])

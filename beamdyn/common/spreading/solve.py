@@ -145,7 +145,7 @@ def _columns(inputs: Sequence[SpreadInput], designs: np.ndarray) -> dict[str, np
 
 @dataclass
 class _FurtherAnswers:
-    """Computes the designs of worst cases, and collects the warnings about them.
+    """Computes the results of designs for worst cases, and collects the warnings about them.
 
     A combination of inputs may be invalid even if each input is valid; such a design has no result.
     """

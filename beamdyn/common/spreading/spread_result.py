@@ -107,7 +107,7 @@ class Spread(Result):
         error = first.error[k] + np.nan_to_num(self.error[k], posinf=np.inf) * abs(self.nominal[k])
         ends = first.smallest[k], first.largest[k]
         low, high = (supported(end, error, _digits_of(*ends)) for end in ends)
-        yield f"{self.answers[k]} of {counted(self.designs, 'design')}: {low} to {high}{unit} first order"
+        yield f"{self.answers[k]} of {counted(self.designs, 'design')}: first order {low} to {high}{unit}"
         if names and len(self.inputs) > 1:
             yield f"{' and '.join(names)} matter{'s' * (len(names) == 1)} most"
         yield warned(self.warnings)

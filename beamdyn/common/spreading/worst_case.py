@@ -103,7 +103,7 @@ class WorstCases:
 
 
 class _Case(NamedTuple):
-    """A design, its result, and the absolute error of the result; or several such cases."""
+    """A design, its result, and the absolute error of the result; or arrays of these for several designs."""
 
     at: np.ndarray
     value: float | np.ndarray
@@ -164,7 +164,7 @@ def worst_cases(
 def _corners(
     trends: np.ndarray, sense: int, low: np.ndarray, high: np.ndarray, nominal: np.ndarray
 ) -> np.ndarray:
-    """Return corners (rows) at which a result may be smallest (sense -1) or largest (sense 1)."""
+    """Return the corners, one per row, at which a result may be smallest (sense -1) or largest (sense 1)."""
     rises, falls = trends == RISES, trends == FALLS
     up = rises if sense > 0 else falls
     at = np.where(up, high, np.where(rises | falls, low, nominal))
@@ -203,14 +203,14 @@ def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
 
 
 def _is_beaten(corner: _Case, best: _Case) -> bool:
-    """Return whether the best known design exceeds the best corner by more than the errors of both."""
+    """Return whether the best known design is better than the best corner by more than both errors."""
     near = sum(0.0 if np.isnan(each.error) else each.error for each in (corner, best))
     near = near + ROUNDING * np.abs(best.value)
     return bool(np.isfinite(best.value) and not np.abs(best.value - corner.value) <= near)
 
 
 def _widened(corner: _Case, best: _Case) -> _Case:
-    """Increase the error of the best corner by the amount by which the best known design exceeds it."""
+    """Increase the error of the best corner by its difference from the best known design."""
     return corner._replace(error=corner.error + np.abs(best.value - corner.value))
 
 

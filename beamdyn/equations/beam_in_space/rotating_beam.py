@@ -121,7 +121,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
 
 
 def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretization) -> RotatingBeam:
-    """Replace a beam's stiffness by that of 6 x 6 section stiffness matrices, without damping."""
+    """Replace a beam's stiffness by that of its 6 x 6 section matrices, and its damping by 0."""
     beam, model, linear = scene.modelled_beam, rotating.beam, rotating.linear
     assert beam.matrices is not None
     xi = model.stations.quadrature.xi
@@ -140,7 +140,7 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
 
 
 def _with_damping(rotating: RotatingBeam, scene: Scene) -> RotatingBeam:
-    """Replace a beam's damping by that of its modes at rest, about the unloaded beam with its curved axis."""
+    """Replace a beam's damping by the damping computed for the unloaded beam with its curved axis."""
     kept = (t for t in rotating.linear.terms if (t.order, t.quantity) != (1, "unity"))
     undamped = replace(rotating, linear=replace(rotating.linear, terms=(*kept,)))
     linear, damping = undamped.linear, damping_terms(undamped.about_straight, scene)
@@ -373,7 +373,7 @@ class BentState(FieldsOnly):
     def linearized(self) -> Equations:
         """Return the equations of small motions about this state.
 
-        Minus the elastic force of the state is one of the loads, so that they add up to 0 in equilibrium.
+        One of the loads is minus the elastic force of the state.  In equilibrium the loads add up to 0.
         """
         linear = self.of.linear
         terms = [
@@ -453,7 +453,10 @@ _STRAIGHT = ONE.scaled(0.0)
 
 
 def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the axis' curvature (3, N) [1/m] at N Gauss points, and kinks (quaternions) before cells."""
+    """Compute the axis' curvature (3, N) [1/m] at N Gauss points, and its kinks.
+
+    The kinks (cells, 4) are unit quaternions of the axis' rotation at the beginning of each cell.
+    """
     cells, sweep, prebend = quadrature.cells, beam.sweep or _STRAIGHT, beam.prebend or _STRAIGHT
     at_points = Sampler.on_cells(cells)
     a = at_points(sweep)

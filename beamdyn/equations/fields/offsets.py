@@ -378,7 +378,7 @@ class Offsets:
             yield Term(NAMES[quantity, order], rows, columns, order, matrix, quantity)
 
     def _moved(self) -> Iterator[_CoupledMatrix]:
-        """Yield inertia, Coriolis, Euler and centrifugal matrices of displacements of first order."""
+        """Yield inertia, Coriolis, Euler and centrifugal matrices for first-order motions of mass centres."""
         B, P = self.frame
         kinds: list[tuple[np.ndarray, float, list[tuple[Quantity, int, float]]]] = [
             (np.eye(3), 1.0, [("unity", 2, 1.0)]),
@@ -411,7 +411,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field, columns.field, quantity, 0, found, mirrored)
 
     def _drawn_in(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the axial force, as motion shortens the line of tension centres."""
+        """Yield matrices for the work of the axial force when motion shortens the line of tension centres."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for trial in self.trials if vector[0] else ():
@@ -423,7 +423,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of transverse forces, as tension centres' offsets change the slope."""
+        """Yield matrices for the work of transverse forces on slopes due to offsets of tension centres."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):
@@ -433,7 +433,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
     def _turned(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the twisting moment, as bending along e1 and e2 twists sections."""
+        """Yield matrices for the work of the twisting moment on the twist by bending along e1 and e2."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
@@ -441,7 +441,7 @@ class Offsets:
                     yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
     def _tightened(self) -> Iterator[_CoupledMatrix]:
-        """Yield the stiffness matrices due to the axial force by the acceleration of masses beside the axis.
+        """Yield the stiffness matrices of the axial force that accelerated masses off the axis cause.
 
         Like any axial force, this force does work on the slope of the beam.
         """

@@ -94,7 +94,7 @@ class WidthFunctions:
         }
         if min(numbers) % 2 and not _is_uniform(section.width):
             self.parts = _parts_over_fixed_width(section.width, tuple(numbers), eta)
-        elif section.width.degree:  # the derivative d/dx is taken at constant y
+        elif section.width.degree:  # the width varies: d/dx at constant y is not d/dx at constant eta
             slope, change = _relative_slopes(section.width, length)
             stretched, turned = eta * dp, dp + eta * ddp
             self.parts["w_x"].append(Derivative(slope.scaled(-1.0), 0, stretched))

@@ -290,7 +290,7 @@ class SectionField(Field):
         return ONE
 
     def _coupling(self, strip: Strip, own: WidthFunctions) -> Iterator[Term]:
-        """Yield the coupling terms with bending; none by default, as for deflections that are odd across."""
+        """Yield the coupling terms with bending; none by default: odd deflections across are not coupled."""
         return iter(())
 
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:

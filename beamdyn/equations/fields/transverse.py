@@ -276,7 +276,7 @@ def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, fl
 
 
 def axis_in_section(scene: Scene) -> tuple[float, float]:
-    """Compute the rotation axis' components in the direction of bending at the root, and perpendicular."""
+    """Compute the rotation axis' components along the direction of bending at the root and across it."""
     (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     return cosine * s, cosine * c
 

@@ -11,7 +11,7 @@ from beamdyn.common.edge.inputs import Quantity
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.scenes import RADIUS, read_station_file
 
-_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # headings of other programs for twist of opposite sign
+_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # headings of other programs, whose twist has the opposite sign
 _MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}
 _NEEDED = ("mass_per_length", "bending_stiffness")
 _SECTION = ("width", "thickness")
@@ -29,7 +29,7 @@ def needs_length(text: DataText) -> bool:
 
 
 def needs_hub_radius(text: DataText) -> bool:
-    """Return whether positions are not measured from the axis, so that the hub radius is needed."""
+    """Return whether positions are not measured from the axis of rotation: the hub radius is then needed."""
     return RADIUS not in read_station_file(text, _MORE).named()
 
 
