@@ -91,7 +91,7 @@ def test_lists_of_variables_of_ansys(read):
     np.testing.assert_allclose(np.degrees(data.phase), [-180, -179, -178], rtol=1e-15)  # two products
     data = read(TRANSIENT, columns={"tip [mm]": "UY_2"})
     np.testing.assert_allclose(data.value[:, 0], [2.3731e-5, 2.5e-5], rtol=1e-15)  # one product
-    with pytest.raises(ValueError, match=r"line 2: expected one variable by amplitude and phase"):
+    with pytest.raises(ValueError, match=r"line 2: expected amplitude and phase of one variable"):
         read(HARMONIC.replace("PHASE", "IMAGINARY"))
 
 

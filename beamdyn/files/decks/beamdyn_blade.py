@@ -252,7 +252,7 @@ def _check_matrices(
         (least_eigenvalues(ours) <= LEAST, "a positive definite matrix"),
     ]
     if name == "mass":
-        wanted = "mass m on the diagonal, m times the mass centre's offsets beside it, and Ixx + Iyy about z"
+        wanted = "mass m on the diagonal, m times the centre's offset off it, inertia about z = Ixx + Iyy"
         is_bad = (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS)
         checks += [(is_bad, wanted)]
     for bad, wanted in checks:
