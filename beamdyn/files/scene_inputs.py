@@ -240,20 +240,20 @@ class StiffnessInput(_BeamInput):
     ] = None
     second_bending_stiffness: Annotated[
         Along | None,
-        Varying("N m2", "E I2", "stiffness for bending in the direction across, for planes = 2", above=0),
+        Varying("N m2", "E I2", "bending stiffness in the second direction, for planes = 2", above=0),
     ] = None
     shear_stiffness: Annotated[
         Along | None, Varying("N", "kappa G A", "shear stiffness, for shear", above=0)
     ] = None
     second_shear_stiffness: Annotated[
         Along | None,
-        Varying("N", "kappa G A2", "shear stiffness in direction across; default: shear_stiffness", above=0),
+        Varying("N", "kappa G A2", "shear stiffness, second direction; default: shear_stiffness", above=0),
     ] = None
     rotary_inertia: Annotated[
         Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
     ] = None
     second_rotary_inertia: Annotated[
-        Along | None, Varying("kg m", "rho I2", "rotary inertia for bending in the direction across", above=0)
+        Along | None, Varying("kg m", "rho I2", "rotary inertia for bending in the second direction", above=0)
     ] = None
     torsion_stiffness: Annotated[
         Along | None, Varying("N m2", "G J", "stiffness against torsion", above=0)
@@ -263,7 +263,7 @@ class StiffnessInput(_BeamInput):
     ] = None
     mass_offset: Annotated[
         Along | None,
-        Varying("m", "c", "offset of mass centre from shear centre, in the direction across, for torsion"),
+        Varying("m", "c", "offset of mass from shear centre across the bending direction, for torsion"),
     ] = None
     tension_offset: Annotated[
         Along | None,

@@ -135,7 +135,8 @@ class Refined:
     model : ModelAtSpeed
         The model.
     larger : ModelAtSpeed or None
-        Model with more modes, or with all trial functions; None if `model` has all, or there is none.
+        Model with more modes, or with all trial functions; None if `model` has all trial functions, or no
+        larger model can be built.
     value, error : ndarray
         The value and its estimated error, of one shape.
     truncation : float

@@ -249,7 +249,7 @@ def root_mean_squares(
         As for `random_response`, checked.
     drive, spectrum
         The input and its density, as `spectra.random_input` gives them.
-    outputs : sequence of DeflectionAt, HarvestedVoltage or another
+    outputs : sequence of DeflectionAt, HarvestedVoltage or another output
         The quantities whose root mean squares are wanted.
 
     Raises
