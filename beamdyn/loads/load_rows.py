@@ -38,7 +38,7 @@ from beamdyn.scene.sections import weight_degree
 STRAIGHT = "loads along the span of a beam with large deflection are not computed"
 _LEAVE_OUT = "leave it out; root moments have it"
 _OF_TAPERED = (
-    "loads along the span are computed with camber only for a constant width and no piezoelectric layers"
+    "loads along the span include camber only if the width is constant, without piezoelectric layers"
 )
 
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
