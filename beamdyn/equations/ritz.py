@@ -265,9 +265,7 @@ def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integratio
     values = np.zeros((n, len(xi)))
     series = _integrate_legendre(n, integrations)
     values[:, inside] = half**integrations * (series.T @ legendre.legvander(t, len(series) - 1).T)
-    for k in range(
-        integrations if beyond.any() else 0
-    ):  # beyond b, the result is a Taylor polynomial about b
+    for k in range(integrations if beyond.any() else 0):  # beyond b: a Taylor polynomial about b
         derivative = half ** (integrations - k) * _integrate_legendre(n, integrations - k).sum(axis=0)
         values[:, beyond] += np.outer(derivative, (xi[beyond] - b) ** k)
     return scale * values

@@ -400,10 +400,7 @@ class Page:
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)
         typed, designs = stored.get("typed", {}), stored.get("designs", {})
-        for (
-            name,
-            work,
-        ) in self.works.items():  # restore unfinished texts first: storing a design would drop them
+        for name, work in self.works.items():  # restore unfinished texts before storing: it would drop them
             entries = designs.get(name, work.document.base_entries)
             if work.recall(read_typed(typed.get(name), entries, work.document.inputs(entries))):
                 self._rebuild(work.document)

@@ -25,9 +25,7 @@ from beamdyn.common.screens.screens import Document, Program, Screen
 
 LONGEST = 120.0  # time limit of a computation [s]
 MEMORY = 800  # memory that a computation may use in addition to an idle process [MB]
-_MOST = max(
-    3, (os.cpu_count() or 1) + 1
-)  # largest number of processes: one stays free during long computations
+_MOST = max(3, (os.cpu_count() or 1) + 1)  # largest number of processes, so that one stays free for others
 _NICE = 5  # niceness of the processes: the server and the browser have higher priority
 _HEEDS = 0.3  # time that an interrupted process has to stop its task, before it is terminated [s]
 _AGAIN = 0.03  # interval of repeated interrupts [s]: a process ignores them during imports

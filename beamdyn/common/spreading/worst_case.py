@@ -164,7 +164,10 @@ def worst_cases(
 def _corners(
     trends: np.ndarray, sense: int, low: np.ndarray, high: np.ndarray, nominal: np.ndarray
 ) -> np.ndarray:
-    """Return the corners, one per row, at which a result may be smallest (sense -1) or largest (sense 1)."""
+    """Return corners of the tolerance region (rows) at which a result may be smallest or largest.
+
+    `sense` is -1 for the smallest value, and 1 for the largest.
+    """
     rises, falls = trends == RISES, trends == FALLS
     up = rises if sense > 0 else falls
     at = np.where(up, high, np.where(rises | falls, low, nominal))

@@ -21,14 +21,8 @@ from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
-_ORDERS = (
-    (0, 0),
-    (0, 1),
-    (0, 2),
-    (1, 0),
-    (2, 0),
-    (1, 1),
-)  # orders of the derivatives along and across the strip
+# Orders of the derivatives of the deflection along and across the strip.
+_ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)
 _ZERO = 1e-12  # averages over the width below this fraction of the largest count as 0: they are 0 by symmetry
 
 
