@@ -16,7 +16,7 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor, tip_inertia
 
-_ROUNDING = 1e-15  # rounding error of accelerations, for example by rounded angles, relative to the largest
+_ROUNDING = 1e-15  # rounding error of accelerations, for example from rounded angles, relative to the largest
 _SAMPLES = 501  # number of instants sampled before the speed is steady, and again at steady speed
 _TURNS = 10  # number of revolutions that are sampled at steady speed
 _MOST_PLACES = 6  # largest number of point masses whose positions are listed

@@ -1,4 +1,4 @@
-"""Integrals over the mass along the beam, and the axial force by accelerations, as piecewise polynomials.
+"""Integrals over the mass along the beam, and the axial force due to accelerations, as piecewise polynomials.
 
 A tip body is not included: it has an offset and moments of inertia, and the displacement fields add its
 terms.

@@ -188,7 +188,7 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
     load: dict[Quantity, float] = {quantity: length * float(rotation @ f) for quantity, f in loads}
     position = rows(0)
     if math.isfinite(spring):
-        slope = kept[full.blocks[name].start] / length  # slope by bending, without shear
+        slope = kept[full.blocks[name].start] / length  # slope due to bending, without shear
         position["unity"] = position["unity"] + spring * length * (slope @ share) * slope
     velocity = rows(1)
     if (voltage := equations.voltage) is not None and full.circuit is not None:

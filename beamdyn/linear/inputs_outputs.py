@@ -87,7 +87,7 @@ class BaseMotion:
 
 
 def _of_unit(mount: Mount, angle: float, direction: str) -> Accelerations:
-    """Compute the root's accelerations by a unit acceleration in a fixed direction, at a rotation angle."""
+    """Compute the root's accelerations, at a rotation angle, for a unit acceleration in a fixed direction."""
     unit, zero = np.zeros(3), np.zeros(())
     unit[_FIXED.index(direction)] = 1.0
     root = root_motion(mount, MotionSample(np.array(angle), zero, zero, unit))

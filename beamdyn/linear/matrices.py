@@ -62,9 +62,9 @@ class Matrices(SceneResult, StatesModelError):
         Loss of K for each m/s2 by which the root accelerates along the beam, beyond the steady rotation:
         the parametric term of translation and gravity [unit of K / (m/s2)].
     static_load : ndarray, shape (n,)
-        Load f by the steady rotation [units of the rows].
+        Load f due to the steady rotation [units of the rows].
     input_matrix : ndarray, shape (n, inputs)
-        Input matrix B: load by a unit of each input [unit of the row / unit of the input].
+        Input matrix B: load due to a unit of each input [unit of the row / unit of the input].
     inputs : tuple of str
         The inputs u, with units.
     coordinates, rows : tuple of str

@@ -224,7 +224,7 @@ class ParametricTerm:
     stiffness_variation : float
         Root mean square of the random variation of the squared lowest frequency, relative to it.
     by_gravity : float
-        Relative amplitude of the variation of the squared lowest frequency by gravity as the beam turns.
+        Relative amplitude of the variation of the squared lowest frequency due to gravity as the beam turns.
     rms_change : float
         Estimated relative change of the root mean square of the lowest mode by the random variation; inf
         where it would grow without limit.

@@ -255,8 +255,8 @@ def _percentile(values: np.ndarray, known: np.ndarray, share: float) -> tuple[fl
     """Compute a percentile (the result below which a given fraction lies), and its standard error.
 
     The error is the change of the percentile if the fraction is changed by its own error.  That error has two
-    parts, added as squares: the standard error by the scatter between blocks, and half the fraction of one
-    sample.
+    parts, added as squares: the standard error from the scatter between blocks, and half the fraction of
+    one sample.
     """
     ordered = values[known]
     found = float(np.quantile(ordered, share))

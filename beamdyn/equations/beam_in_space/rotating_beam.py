@@ -2,9 +2,9 @@
 
 Coordinates and elastic energy are taken from the displacement fields of the straight beam (bending in two
 directions, shear, stretch, torsion); the trial functions of the fields give the strains here.  The inertial
-forces by the root's motion are exact.  The gyroscopic matrix follows from them: let p be the generalized
-inertial force by a unit angular acceleration, and E the derivative of p with respect to the coordinates; the
-gyroscopic matrix per speed is E - E^T.
+forces due to the root's motion are exact.  The gyroscopic matrix follows from them: let p be the generalized
+inertial force due to a unit angular acceleration, and E the derivative of p with respect to the coordinates;
+the gyroscopic matrix per speed is E - E^T.
 
 With the prebend angle b and the sweep angle a of a curved beam, the local axes are the root's axes rotated by
 b about the third axis, then by -a about the second, so that the unloaded beam points along
@@ -151,7 +151,7 @@ def _with_damping(rotating: RotatingBeam, scene: Scene) -> RotatingBeam:
 
 
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
-    """Compute strains (6, n, 6, points) by six forces and moments, each varying along x as n polynomials do.
+    """Compute strains (6, n, 6, points) due to six forces and moments that vary along x as n polynomials.
 
     The first axis counts forces and moments, the second the polynomials, and the third the strains.  The
     polynomials describe components in the axes at the root, which are smooth over the beam; components in
@@ -364,7 +364,7 @@ class BentState(FieldsOnly):
         return euler - euler.T
 
     def steady(self) -> SteadyPencil:
-        """Return the equations of small motions at steady speed; `f2` is the load by centrifugal forces."""
+        """Return the equations of small motions at steady speed; `f2` is the centrifugal load."""
         linear, (force, K2) = self.of.linear, self.under(self.of.turning)
         K0 = linear.matrices[0]["unity"] + (self.under({"unity": 1.0}).change if self.of.load else 0.0)
         C = linear.matrices[1].get("unity", np.zeros_like(K0))

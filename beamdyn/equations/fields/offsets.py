@@ -99,7 +99,7 @@ EXPLANATIONS: Mapping[str, Explanation] = {
 
 # Index of the first component of c (mass centre), and of t (tension centre), in arrays with both.
 _C, _T = 0, 2
-_TURN = 2  # index of the rotation by torsion, after the two tilts towards e1 and e2
+_TURN = 2  # index of the twist due to torsion, after the two tilts towards e1 and e2
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4).
+    """Compute d2 u/(dr ds) of the mass centre's displacement u for two rotations r and s: shape (3, 4).
 
     The axes of the result are those of `SectionMotion.beside`: directions, and components of the offsets.
     """
@@ -433,7 +433,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
     def _turned(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the twisting moment on the twist by bending along e1 and e2."""
+        """Yield matrices for the work of the twisting moment on the twist due to bending along e1 and e2."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
@@ -461,7 +461,7 @@ class Offsets:
     # Loads --------------------------------------------------------------------------------------------
 
     def loads(self) -> Iterator[Load]:
-        """Yield the loads by accelerations of the axis, and of mass centres relative to the axis."""
+        """Yield the loads due to accelerations of the axis, and of mass centres relative to the axis."""
         sums: dict[tuple[str, Quantity], np.ndarray] = {}
         for motion in self.motions:
             for quantity, coefficients, power in self._accelerated(motion):

@@ -130,7 +130,7 @@ def _parts_over_fixed_width(
         powers.append(powers[-1] * r)
 
     def of(along: int, across: int) -> list[Derivative]:
-        """List the summands of the deflection's derivative of given orders by x (along) and y (across)."""
+        """List the summands of the deflection's derivative of order `along` in x and order `across` in y."""
         return [
             Derivative(
                 powers[m - across].scaled(math.perm(m, across) * dy**across),

@@ -37,13 +37,12 @@ the unit vector a adds
     omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
     N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
 
-where omega^2 T is the tension by rotation per width, and a1, a2 are the components of a in the directions of
-bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).  N_y
-is a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation
-also twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of the
-thickness.
-In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly where the width has
-a kink or jumps; of the even ones d/dx at constant y is d/dx - eta (b'/b) d/d eta.
+where omega^2 T is the tension per width due to rotation, and a1, a2 are the components of a in the directions
+of bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).
+N_y is a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero,
+rotation also twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of
+the thickness.  In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly
+where the width has a kink or jumps; for even functions, d/dx at constant y is d/dx - eta (b'/b) d/d eta.
 
 Bodies at the tip and along the beam, springs and accelerations of the root act on the mean deflection over
 the width; a tip body also rotates with the mean twist of the tip.  Derivation: docs/conventions.md and

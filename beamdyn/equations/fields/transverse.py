@@ -282,7 +282,7 @@ def axis_in_section(scene: Scene) -> tuple[float, float]:
 
 
 def _terms(pair: Pair) -> Iterator[Term]:
-    """Yield mass and stiffness terms: elastic, of springs, by tension and by rotation."""
+    """Yield mass and stiffness terms: elastic, of springs, and due to tension and rotation."""
     rows, columns, (i, j) = pair.rows, pair.columns, pair.directions
     scene, beam, tip, sections = rows.scene, rows.beam, rows.tip, section_tensor(rows.beam, "rotary_inertia")
     cosine, sine = exact_cos_sin(scene.mount.precone)
