@@ -101,7 +101,10 @@ class FindPanel:
         self._busy.show(self._way.slow, self._way.words)
 
     def _settle(self, future: asyncio.Future[str], last: bool) -> None:
-        """Show the input value that the search has found, or the reason why it found none."""
+        """Show the input value that the search has found, or the reason why it found none.
+
+        `future` is that of the finished search; `last` tells whether no newer search was requested.
+        """
         if self._found.is_deleted:
             return
         self._tell()

@@ -295,7 +295,10 @@ class ScreenView:
             panel.close()
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
-        """Show a finished result; if it failed, show why, and grey the old result."""
+        """Show a finished result; if it failed, show why, and grey the old result.
+
+        `last` tells whether no newer result was requested.
+        """
         if self._left.is_deleted:
             return
         outcome, before = outcome_of(future, self.work, self.screen), self._answered
@@ -470,7 +473,10 @@ class ScreenView:
         return self._branch.choose(answered.answer, self.screen.branches(answered.answer))
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
-        """Write the new position of a handle into the fields, and compute the result."""
+        """Write the new position of a handle into the fields, and compute the result.
+
+        `done` tells whether the user has released the handle.
+        """
         if self._player is not None:
             self._player.pause()
         texts = changed_texts(handle, target, self.work.entries, self.work.inputs)

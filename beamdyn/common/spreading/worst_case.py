@@ -182,7 +182,7 @@ def _ends(
 ) -> Iterator[tuple[_Case, _Case]]:
     """Yield, for the smallest and the largest value of each result, the best corner and the best design.
 
-    The best design is chosen among the corners and the designs with known results.
+    The best design is chosen among the corners and `known`: designs, their results, and errors of these.
     """
     places = np.cumsum([len(part) for part in corners])[:-1]
     values, errors = (np.split(each, places) for each in answer(np.vstack(corners)))
