@@ -134,8 +134,9 @@ def _modal_damping(part: SteadyPencil, ratios: np.ndarray | None = None) -> np.n
     compliance = solve_lower(L, solve_lower(L, M).T)
     mu, U = np.linalg.eigh((compliance + compliance.T) / 2)
     unshifted: np.ndarray | float = 1.0
-    # With a shift, the factor 1 - shift mu is computed as v^T K v, since the difference loses digits if a
-    # spring is soft; it is 0 if it is within rounding.
+    # With a shift, each eigenvalue mu of B has the factor 1 - shift mu.  It is computed as v^T K v, with
+    # v = L^-T u for the eigenvector u, since the difference would lose digits if a spring is soft.  A factor
+    # within its rounding error is set to 0.
     if shift:
         v = solve_lower_transposed(L, U)
         quotient = np.einsum("nk,nk->k", v, K @ v)

@@ -1,7 +1,7 @@
 """Electric circuit of a piezoelectric harvester in the equations of motion: capacitance and resistance.
 
-Let v be the voltage, q the coordinates, and theta the bending moment by a unit voltage times the change of
-slope between the electrodes' ends per unit coordinate:
+Let v be the voltage, q the coordinates, and theta the bending moment due to a unit voltage times the change
+of slope between the electrodes' ends per unit coordinate:
 
     M q'' + C q' + K q = f + theta v,    Cp v' + v/R + theta^T q' = 0.
 
@@ -13,9 +13,10 @@ theta^T / Cp.  For a short circuit, v = 0.  Otherwise the circuit has a coordina
 - the **charge** Q that has flown, v = -(Q + theta^T q)/Cp: resistance R, stiffness 1/Cp, no mass; the
   stiffness stays positive definite, for linear models.
 
-Neglected modes respond quasi-statically to a voltage, by their residual flexibility g = K^-1 theta beyond
-the modes (Craig and Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4): the capacitance of
-the reduced model is Cp + theta^T g.
+Modes that a reduced model neglects respond quasi-statically to a voltage.  Their deflection under a unit
+voltage, the residual flexibility g, is K^-1 theta minus the contribution of the retained modes (Craig and
+Kurdila, Fundamentals of Structural Dynamics (2006), section 11.4).  The capacitance of the reduced model is
+Cp + theta^T g.
 """
 
 from __future__ import annotations
@@ -78,7 +79,7 @@ def strain_of(beam: Beam, deflection: Deflection, xi: np.ndarray) -> np.ndarray:
 def coupling_of(
     beam: Beam, deflections: Mapping[str, Deflection], sections: Iterable[tuple[str, SectionFunctions]]
 ) -> dict[str, np.ndarray]:
-    """Compute the coupling of each field: work of the moment by a unit voltage, per function of the field.
+    """Compute each field's coupling: the work, per function, of the bending moment due to a unit voltage.
 
     In bending, the moment does work on the slopes at the ends of the electrodes.  If sections can camber, it
     also does work on the mean curvature across the width.

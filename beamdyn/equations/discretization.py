@@ -124,7 +124,8 @@ def _integrate_interpolant(t: np.ndarray, points: int) -> np.ndarray:
     return legendre.legvander(t, points) @ integrals @ legendre_series(points)
 
 
-# Smallest degree of the cached polynomials: most properties, and the tension, have no higher degree.
+# Legendre polynomials are cached at least up to this degree: most properties, and the tension, have no higher
+# degree.
 _OF_TENSION = 8
 
 
@@ -202,7 +203,10 @@ class SampledSpace(FieldsOnly, ABC):
     @property
     @abstractmethod
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span the coarser discretization; None if no subset of functions does."""
+        """Indices of functions that span the coarser discretization; None if no subset of functions does.
+
+        Results with the coarser discretization serve to estimate errors.
+        """
 
     def weights(self, weight: Profile) -> np.ndarray:
         """Multiply the weights of the Gauss rule by a property of the beam at the Gauss points."""
@@ -240,7 +244,7 @@ class RootConditions(NamedTuple):
 
 
 CLAMPED = RootConditions(2, 2)  # a deflection with zero slope at the root
-HINGED = RootConditions(1, 2)  # a deflection whose first function rotates about the root
+HINGED = RootConditions(1, 2)  # a deflection that is 0 at the root; its first function rotates about the root
 FIXED = RootConditions(1, 1)  # a displacement that is 0 at the root, such as stretch
 
 
@@ -254,9 +258,10 @@ class SampledSpaces(ABC):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+        """Integrate a weight times derivatives of two functions over x/L, for all pairs of functions.
 
-        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        The rows of the result are functions with the root conditions `rows`, its columns are functions with
+        the root conditions `columns`; `orders` are the orders of the two derivatives.
         """
         left, right = self.functions(rows), self.functions(columns)
         return (left.samples[orders[0]] * left.weights(weight)) @ right.samples[orders[1]].T
@@ -284,7 +289,10 @@ class Space(Functions, Protocol):
 
     @property
     def coarse(self) -> np.ndarray | None:
-        """Indices of functions that span the coarser discretization; None if no subset of functions does."""
+        """Indices of functions that span the coarser discretization; None if no subset of functions does.
+
+        Results with the coarser discretization serve to estimate errors.
+        """
         ...
 
     def gram(self, weight: Profile, order: int) -> np.ndarray:
@@ -309,9 +317,10 @@ class Spaces(Protocol):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+        """Integrate a weight times derivatives of two functions over x/L, for all pairs of functions.
 
-        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        The rows of the result are functions with the root conditions `rows`, its columns are functions with
+        the root conditions `columns`; `orders` are the orders of the two derivatives.
         """
         ...
 
@@ -344,8 +353,9 @@ class Discretization(Protocol):
     3. All physics is in the displacement fields (`beamdyn.equations.fields`); a function space only
        integrates and evaluates.
     4. `coarser` and `finer` make a sequence.  The truncation error of a result is estimated by its difference
-       from that of `coarser`; a tolerance is met by repeating `finer`.  Where functions of a space span those
-       of the coarser one, its `coarse` has their indices, and the coarser equations are a part of these.
+       from that of `coarser`; a tolerance is met by repeating `finer`.  Where some functions of a space
+       span the coarser space, its `coarse` has their indices; the matrices of the coarser equations are then
+       rows and columns of the matrices of the finer ones.
     5. `order` is the order of convergence, for Richardson extrapolation, if the error is a power of the size;
        `converges_regularly` tells whether errors can be estimated without a further margin.
     6. An instance is passed as ``discretization=`` to any analysis.  To be chosen by name, it needs a line
@@ -393,5 +403,5 @@ class Discretization(Protocol):
         ...
 
     def fits(self, modes: int) -> bool:
-        """Return whether even the coarser discretization has enough functions for a number of modes."""
+        """Return whether both this discretization and `coarser` have enough functions for so many modes."""
         ...

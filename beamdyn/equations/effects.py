@@ -60,7 +60,10 @@ class Effect:
         return bool(self.switch) and getattr(scene.physics, self.switch) == self.value
 
     def is_left_out(self, scene: Scene) -> bool:
-        """Return whether a scene's model neglects the effect; twist and offsets only if the beam has them."""
+        """Return whether a scene's model neglects the effect.
+
+        Twist and given offsets count as neglected only if the beam has them.
+        """
         has = {
             TWIST: scene.beam.is_twisted,
             OFFSETS: scene.beam.has_offsets,
@@ -97,8 +100,8 @@ class Effect:
     def _why_refused(self, scene: Scene) -> str | None:
         """Explain why the scene's model cannot include the effect, whatever data are given.
 
-        None if the effect can be included, or only data are missing.  Large deflection, as the effect or in
-        the scene, is not checked: the result is None.
+        Return None if the effect can be included, or if only data are missing.  Also return None, without a
+        check, if the effect is large deflection or the scene has large deflection.
         """
         if scene.physics.large_deflection or self is LARGE_DEFLECTION:
             return None
@@ -160,10 +163,10 @@ LARGE_DEFLECTION = Effect(
     "large deflection", "the equations are linear about the straight beam", "large_deflection", bends=True
 )
 _OFFSETS = "offsets of sections"
-_LINE = "their centres of gravity, tension and shear are on one straight line"
-# Offsets are given, but torsion is not modelled.
+_LINE = "the centres of gravity, tension and shear of the sections are on one straight line"
+# The effect for a beam with given offsets, which are neglected if torsion is not modelled.
 OFFSETS = Effect(_OFFSETS, _LINE, "torsion", needs=("torsion_stiffness",))
-_IN_LINE = Effect(_OFFSETS, _LINE)  # no offsets are given
+_IN_LINE = Effect(_OFFSETS, _LINE)  # the effect for a beam without given offsets
 EFFECTS = SECOND_PLANE, TWIST, SHEAR, ROTARY_INERTIA, CAMBER, STRETCH, LARGE_DEFLECTION, TORSION, OFFSETS
 NEVER_MODELLED = _IN_LINE, Effect("contact", "nothing touches the beam")
 NAMED = {effect.name: effect for effect in EFFECTS}
@@ -180,7 +183,7 @@ def add_effects(scene: Scene, effects: Iterable[Effect]) -> Scene:
     return replace(scene, physics=replace(scene.physics, **{each.switch: each.value for each in effects}))
 
 
-_CHOSEN = 'physics is "auto": an analysis adds it where it matters'
+_CHOSEN = 'physics is "auto": an analysis adds the effect where it matters'
 
 
 @dataclass(frozen=True)

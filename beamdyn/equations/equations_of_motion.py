@@ -26,9 +26,9 @@ from beamdyn.equations.root_motion import Quantity, RootMotion, root_at_unit_spe
 from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import Mount
 
-# Both constants are fitted to the rounding errors of 720 frequencies of random scenes, computed by
-# benchmarks/stated_frequency_errors.py.  As rows and columns of the matrices have very different sizes, the
-# errors are smaller than the norms of the matrices suggest.
+# `BACKWARD` and `ROUNDING_SIZE` are fitted to the rounding errors of 720 frequencies of random scenes, which
+# benchmarks/stated_frequency_errors.py computes.  As rows and columns of the matrices have very different
+# sizes, the errors are smaller than the norms of the matrices suggest.
 BACKWARD = 8 * np.finfo(float).eps  # backward error of the stiffness, relative to the sum of its terms
 # Number of functions above which rounding errors grow in proportion to the number of functions.
 ROUNDING_SIZE = 40
@@ -46,8 +46,8 @@ class SteadyPencil:
     f2 : ndarray, shape (n,)
         Static load divided by the squared speed.
     shift : float
-        Squared first angular frequency of the beam with a clamped root [1/s2]; 0 if the root is clamped.
-        K0 + shift M is positive definite.
+        Squared first angular frequency of the beam with a clamped root [1/s2], if the root is not clamped:
+        K0 may then be singular, but K0 + shift M is positive definite.  0 if the root is clamped.
     planes : int
         Number of directions in which the beam bends, 1 or 2; with 2, stated errors include rounding errors of
         matrix entries that cancel.

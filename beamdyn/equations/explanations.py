@@ -16,8 +16,8 @@ from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.sections import section_tensor, tip_inertia
 
-_ROUNDING = 1e-15  # rounding error of accelerations (such as by rounded angles), relative to the largest one
-_SAMPLES = 501  # number of times sampled before the speed is steady, and again at steady speed
+_ROUNDING = 1e-15  # rounding error of accelerations, for example from rounded angles, relative to the largest
+_SAMPLES = 501  # number of instants sampled before the speed is steady, and again at steady speed
 _TURNS = 10  # number of revolutions that are sampled at steady speed
 _MOST_PLACES = 6  # largest number of point masses whose positions are listed
 _HORIZON = 100.0  # sampled duration [s] of a motion that never becomes steady and has no end
@@ -122,12 +122,12 @@ def say_mass(scene: SampledScene) -> str:
     heavy = [lump for lump in scene.scene.beam.point_masses if lump.mass]
     if not heavy:
         return "always"
-    total = f"{math.fsum(lump.mass for lump in heavy):.4g} kg of it"
+    total = f"{math.fsum(lump.mass for lump in heavy):.4g} kg of the mass"
     places = sorted({f"{lump.position:.4g}": lump.position for lump in heavy}.items(), key=lambda p: p[1])
     names = [name for name, _ in places]
     among = len(names) > _MOST_PLACES
     where = f"{len(heavy)} places from x = {names[0]} m to {names[-1]} m" if among else None
-    return f"always; {total} in point masses at {where or f'x = {_enumerate(names)} m'}"
+    return f"always; {total} is in point masses at {where or f'x = {_enumerate(names)} m'}"
 
 
 def say_tension(scene: SampledScene) -> str:
@@ -159,7 +159,7 @@ def _transverse(scene: SampledScene) -> tuple[str, ...]:
 def _say_unloaded(scene: SampledScene) -> str:
     steady = "" if scene.is_nonzero("acceleration") else ", no angular acceleration"
     if abs(math.sin(scene.scene.mount.setting_angle)) < _ROUNDING:
-        return f"no setting angle, so no static load{steady}, no translation or gravity across the beam"
+        return f"the beam is radial, so no static load{steady}, no translation or gravity across the beam"
     return f"the root has no acceleration in the direction of bending{steady}"
 
 
@@ -205,7 +205,7 @@ def _say_root(scene: SampledScene) -> str:
     springs = scene.scene.mount.root_stiffnesses[: scene.scene.physics.planes]
     if math.inf not in springs:
         return "the root is a hinge: it turns freely"
-    return "the root is clamped" if 0 not in springs else "the root is clamped or a hinge: no spring holds it"
+    return "the root is clamped" if 0 not in springs else "root clamped in one plane, hinged in the other"
 
 
 # Conditions shared by terms of several fields.

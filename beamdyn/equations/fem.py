@@ -180,9 +180,10 @@ class FemSpaces(FieldsOnly):
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+        """Integrate a weight times derivatives of two functions over x/L, for all pairs of functions.
 
-        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        The rows of the result are functions with the root conditions `rows`, its columns are functions with
+        the root conditions `columns`; `orders` are the orders of the two derivatives.
         """
         return _integrate(self.functions(rows), self.functions(columns), weight, orders)
 
@@ -248,7 +249,7 @@ class FemSpace(FieldsOnly):
 
     @property
     def coarse(self) -> None:
-        """None: no subset of the functions spans a coarser mesh, whose functions are linear combinations."""
+        """None: functions of a coarser mesh are linear combinations of these functions, not a subset."""
         return None
 
     def weights(self, weight: Profile) -> np.ndarray:

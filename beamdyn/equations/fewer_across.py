@@ -11,7 +11,7 @@ from beamdyn.scene.beam import Beam
 from beamdyn.scene.profile import Profile
 
 _FEWER = 2  # number of functions across the width that are left out: one of torsion, one of camber
-_LEAST = 2  # smallest number of functions across the width
+_LEAST = 2  # smallest number of functions across the width that remain
 
 
 @dataclass(frozen=True)
@@ -63,13 +63,13 @@ class FewerAcross:
         return None if finer is None else FewerAcross(finer)
 
     def fits(self, modes: int) -> bool:
-        """Return whether even the coarser discretization has enough functions for a number of modes."""
+        """Return whether both this discretization and `coarser` have enough functions for so many modes."""
         return self.whole.fits(modes)
 
 
 @dataclass(frozen=True)
 class SpacesOfFewer:
-    """Function spaces like others, but with two functions fewer across the width of a plate.
+    """Function spaces like given ones, but with two functions fewer across the width of a plate.
 
     Parameters
     ----------
@@ -86,9 +86,10 @@ class SpacesOfFewer:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+        """Integrate a weight times derivatives of two functions over x/L, for all pairs of functions.
 
-        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        The rows of the result are functions with the root conditions `rows`, its columns are functions with
+        the root conditions `columns`; `orders` are the orders of the two derivatives.
         """
         return self.whole.product(weight, rows, columns, orders)
 

@@ -1,4 +1,4 @@
-"""Voltage, current and layer strain of a harvester, as linear functions of the coordinates of equations."""
+"""Voltage, current and layer strain of a harvester, as linear functions of generalized coordinates."""
 
 from __future__ import annotations
 

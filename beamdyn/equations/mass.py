@@ -1,4 +1,4 @@
-"""Integrals over the mass along the beam, and the axial force by accelerations, as piecewise polynomials.
+"""Integrals over the mass along the beam, and the axial force due to accelerations, as piecewise polynomials.
 
 A tip body is not included: it has an offset and moments of inertia, and the displacement fields add its
 terms.
@@ -82,7 +82,10 @@ class PiecewisePolynomials:
         return np.concatenate([hats, *on_parts])
 
     def phases(self, left: np.ndarray, right: np.ndarray, number: int) -> np.ndarray:
-        """Compute the phase change [rad] of the oscillating polynomial of highest degree over given cells."""
+        """Compute the phase change [rad] of the polynomial of highest degree over each of given cells.
+
+        The polynomial oscillates like the cosine of this phase.
+        """
         part, ends = self._part((left + right) / 2), np.array(self.ends)
         start, length = ends[part], np.diff(ends)[part]
         first, last = (np.arccos(np.clip(1 - 2 * (x - start) / length, -1, 1)) for x in (left, right))
@@ -95,9 +98,10 @@ def gram_by_mass(beam: Beam, space: Space) -> np.ndarray:
 
 
 def product_by_mass(beam: Beam, spaces: Spaces, rows: RootConditions, columns: RootConditions) -> np.ndarray:
-    """Integrate products of two functions, weighted by the mass [kg], for each function of two sets.
+    """Integrate products of two functions, weighted by the mass [kg], for all pairs of functions.
 
-    `rows` and `columns` are the root conditions of the two sets.
+    The rows of the result are functions with the root conditions `rows`, its columns are functions with the
+    root conditions `columns`.
     """
     of_sections = spaces.product(beam.mass_per_length, rows, columns) * beam.length
     return of_sections + product_at_lumps(beam, spaces.functions(rows), spaces.functions(columns))

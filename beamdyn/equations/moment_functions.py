@@ -52,8 +52,8 @@ from beamdyn.scene.profile import Profile, merge_breakpoints
 from beamdyn.scene.sections import Tensor, inertia_about_shear_centre, section_tensor, weight_degree
 
 NODES = 12  # number of nodes on each cell, through which quotients of moment and stiffness are interpolated
-# Size of an interpolant's last coefficients, divided by its largest coefficient, below which a cell is
-# resolved; the error of eigenvalues is proportional to the square of this ratio.
+# Size of an interpolant's last coefficients, divided by its largest coefficient, below which the interpolant
+# counts as exact on a cell; the error of eigenvalues is proportional to the square of this ratio.
 _RESOLVED = 1e-7
 _ROUNDING = 10 * float(np.finfo(float).eps)  # relative rounding error of a sum of polynomials
 _PHASE = 7.0  # largest phase change [rad] of the highest polynomial within a cell

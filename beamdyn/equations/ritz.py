@@ -27,10 +27,11 @@ _POINTS_OF_TURNS = 14  # number of additional Gauss points on each segment, for 
 # Number of Gauss points on each cell of the basis "moments", whose cells are many and small.
 _POINTS_OF_MOMENTS = 8
 
-# Ratio of function numbers of the coarser basis and the basis: smaller if the basis converges slowly.
+# Number of functions of the coarser basis, divided by that of the given basis.  The more slowly a basis
+# converges, the smaller is this ratio, so that the difference of both results is not less than the error.
 _COARSER = {"legendre": 0.88, "eigenfunctions": 0.5, "moments": 0.72}
 _WORDS = {"legendre": "Legendre functions", "eigenfunctions": "eigenfunctions", "moments": "bending moments"}
-# Ratio of function numbers of the finer basis and the basis: larger if the basis converges slowly.
+# Number of functions of the next finer basis, divided by that of the given basis.
 _FINER = {"legendre": 1.2, "eigenfunctions": 1.2, "moments": 1.35}
 
 
@@ -154,7 +155,7 @@ class RitzSpaces(SampledSpaces):
 
     @property
     def fewer_across(self) -> int:
-        """Number of functions across the width in the coarser basis: one of torsion and of camber less."""
+        """Number of functions across the width in the coarser basis: two fewer, but at least 2."""
         return max(2, self.across - 2)
 
     def shares_functions(self, other: RitzSpaces) -> bool:
@@ -264,7 +265,7 @@ def _integrate_on_segment(n: int, a: float, b: float, xi: np.ndarray, integratio
     values = np.zeros((n, len(xi)))
     series = _integrate_legendre(n, integrations)
     values[:, inside] = half**integrations * (series.T @ legendre.legvander(t, len(series) - 1).T)
-    for k in range(integrations if beyond.any() else 0):  # Taylor polynomial about b of degree 0 or 1
+    for k in range(integrations if beyond.any() else 0):  # beyond b: a Taylor polynomial about b
         derivative = half ** (integrations - k) * _integrate_legendre(n, integrations - k).sum(axis=0)
         values[:, beyond] += np.outer(derivative, (xi[beyond] - b) ** k)
     return scale * values

@@ -157,7 +157,7 @@ def static_moment(
 def _freed(scene: Scene, discretization: Discretization, direction: int) -> Equations:
     """Assemble the equations of the scene with a root that rotates freely in one direction."""
     hinges = {"root_stiffness": 0.0} if direction == 0 else {"second_root_stiffness": 0.0}
-    local = replace(scene.damping, ratios=())  # modal damping does no work on the test function
+    local = replace(scene.damping, ratios=())  # leave out modal damping: it does no work on the test function
     freed = replace(scene, damping_ratio=0.0, damping=local, mount=replace(scene.mount, **hinges))
     return assemble_over(freed, discretization.spaces(scene.modelled_beam))
 
@@ -188,7 +188,7 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
     load: dict[Quantity, float] = {quantity: length * float(rotation @ f) for quantity, f in loads}
     position = rows(0)
     if math.isfinite(spring):
-        slope = kept[full.blocks[name].start] / length  # slope by bending, without shear
+        slope = kept[full.blocks[name].start] / length  # slope due to bending, without shear
         position["unity"] = position["unity"] + spring * length * (slope @ share) * slope
     velocity = rows(1)
     if (voltage := equations.voltage) is not None and full.circuit is not None:
@@ -199,7 +199,10 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
 
 
 def _embed(full: Equations, equations: Equations) -> np.ndarray:
-    """Compute the matrix that transforms coordinates of `equations` to those of `full`, with a free root."""
+    """Compute the matrix that transforms coordinates of `equations` to those of `full`.
+
+    `full` are the equations in all functions, for a root that rotates freely.
+    """
     kept = np.zeros((full.size, equations.size))
     for name, shape in equations.shapes.items():
         end = full.blocks[name].stop

@@ -14,7 +14,7 @@ from beamdyn.scene.mount import Mount, aligned_cos_sin, exact_cos_sin
 Quantity = Literal[
     "unity", "speed", "acceleration", "speed_squared", "root_axial", "root_transverse", "root_across"
 ]
-_UNIT_SPEED = MotionSample.steady(1.0)  # the carrier rotates at 1 rad/s
+_UNIT_SPEED = MotionSample.steady(1.0)  # motion of a carrier that rotates at 1 rad/s
 CONSTANT_AT_STEADY_SPEED: tuple[Quantity, ...] = ("unity", "speed", "acceleration", "speed_squared")
 
 
@@ -34,7 +34,8 @@ class RootMotion:
         Acceleration c a_O2 + s a_O3 of the root in the direction of bending, minus gravity [m/s2]; c and s
         are the cosine and sine of the bending angle.
     root_across : ndarray
-        Acceleration c a_O3 - s a_O2 of the root perpendicular to both, minus gravity [m/s2].
+        Acceleration c a_O3 - s a_O2 of the root perpendicular to the beam and to the direction of bending,
+        minus gravity [m/s2].
 
     Directions are the axes of the beam, which the precone inclines.
     """

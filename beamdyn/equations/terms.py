@@ -114,7 +114,7 @@ class Terms(Result):
         ]
 
     def excited(self) -> str:
-        """Describe the excitation lines in a sentence."""
+        """Describe in a sentence the lines: excited frequencies, as multiples of the speed."""
         names = ", ".join(f"{line.name} at {line.multiple:.6g} times the speed" for line in self.lines)
         return f"Lines: {names or 'none'}."
 

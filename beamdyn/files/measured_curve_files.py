@@ -66,7 +66,7 @@ def reader_of(text: DataText) -> Callable[..., MeasuredCurves | MeasuredFrequenc
 def read_history(text: DataText, half: Half, speed: float | None) -> MeasuredHistory:
     """Read time histories: a column of times, and at least one column such as "tip" or "root moment"."""
     if speed is not None:
-        bound = "measured histories are compared with the transient of the scene's motion"
+        bound = "measured histories need no speed: the speed is that of the scene's motion"
         raise InvalidValue("speeds", speed, bound, "leave it out", "rad/s")
     table, columns = _read(text, MeasuredHistory)
     _check_ascending(table, "time", "s")
@@ -221,7 +221,10 @@ def _response_head(table: CsvTable, column: CsvColumn) -> tuple[float, str, str]
 
 
 def _plain_unit(unit: str) -> float:
-    """Return the unit, "", "-" or a positive number, of a dimensionless quantity; else raise a ValueError."""
+    """Return the size of a dimensionless unit: 1 for "" and "-", else the positive number that is given.
+
+    A ValueError is raised for any other text.
+    """
     size = 1.0 if unit in ("", "-") else float(unit)
     if not 0 < size < math.inf:
         raise ValueError(unit)

@@ -142,7 +142,7 @@ def _speeds(text: DataText, own: np.ndarray | None, given: np.ndarray | None, co
         return np.zeros(1)
     if given is None or len(given) != count:
         found = "none" if given is None else str(len(given))
-        said = f"expected a column 'speed [rpm]' or {count} speeds with the file, found {found}"
+        said = f"expected a column 'speed [rpm]' or {count} speeds given with the file, found {found}"
         raise text.refusal(1, said)
     return given
 
@@ -237,7 +237,7 @@ def _from_list(text: DataText, head: int) -> _Read:
             continue
         value = number_at(text, line, match[2], "TIME/FREQ")
         if value <= 0:
-            said = f"expected a frequency above 0, found {match[2]}; leave out modes of a rigid body"
+            said = f"expected a frequency above 0, found {match[2]}; leave out rigid-body modes"
             raise text.refusal(line, said)
         steps.setdefault(int(match[3]), []).append((value, match[2]))
     if not steps:

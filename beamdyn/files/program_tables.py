@@ -102,7 +102,7 @@ def _of_list(text: DataText, head: int) -> list[str]:
     names = re.findall(r"\b[A-Z]\w*_\d+\b", heading) or _VARIABLE.findall(heading)
     if "FREQ" in heading.split():
         if "PHASE" not in heading or len(rows[first]) != 3:
-            raise text.refusal(head + 1, "expected one variable by amplitude and phase: PRCPLX,1, then PRVAR")
+            raise text.refusal(head + 1, "expected amplitude and phase of one variable: PRCPLX,1, then PRVAR")
         heads = ["frequency [Hz]", names[0], "phase [deg]"]
     else:
         heads = ["time [s]", *names]

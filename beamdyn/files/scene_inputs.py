@@ -29,7 +29,7 @@ from beamdyn.scene.profile import Table
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.section_matrices import UPPER, SectionMatrices, entry_name, entry_units
 
-Along = float | Polynomial | Table  # a property that varies along the beam
+Along = float | Polynomial | Table  # a property along the beam: number, polynomial in x/L or table
 
 
 class Metres(float):
@@ -145,7 +145,7 @@ def _in_a_list(key: str) -> BeforeValidator:
 
     def refuse_one(given: Any) -> Any:
         if isinstance(given, Mapping):
-            raise InvalidInput("", dict(given), f"give a table [[beam.{key}]] in two brackets for each one")
+            raise InvalidInput("", dict(given), f"give [[beam.{key}]] in double brackets for each item")
         return given
 
     return BeforeValidator(refuse_one)
@@ -170,7 +170,7 @@ class _BeamInput(CoreSection):
         list[list[Any]] | None,
         Field(
             description="table of the sections: a row of headings such as x/L and twist [deg], then numbers, "
-            "one row per station; linear between stations; a jump at one given twice; or name of a CSV file"
+            "one row per station; linear between stations; two rows at a jump; or name of a CSV file"
         ),
     ] = None
     twist: Annotated[
@@ -180,12 +180,12 @@ class _BeamInput(CoreSection):
     sweep: Annotated[
         Along | None,
         Varying(
-            "rad", "Lambda", "angle of the axis to its direction at the root, out of the plane of bending"
+            "rad", "Lambda", "angle of the axis from its direction at the root, out of the plane of bending"
         ),
     ] = None
     prebend: Annotated[
         Along | None,
-        Varying("rad", "beta", "angle of the axis to its direction at the root, in the plane of bending"),
+        Varying("rad", "beta", "angle of the axis from its direction at the root, in the plane of bending"),
     ] = None
     point_mass: Annotated[list[_PointMassInput], _in_a_list("point_mass")] = []  # noqa: RUF012  (the same)
     point_spring: Annotated[list[_PointSpringInput], _in_a_list("point_spring")] = []  # noqa: RUF012
@@ -241,20 +241,20 @@ class StiffnessInput(_BeamInput):
     ] = None
     second_bending_stiffness: Annotated[
         Along | None,
-        Varying("N m2", "E I2", "stiffness for bending in the direction across, for planes = 2", above=0),
+        Varying("N m2", "E I2", "bending stiffness in the second direction, for planes = 2", above=0),
     ] = None
     shear_stiffness: Annotated[
         Along | None, Varying("N", "kappa G A", "shear stiffness, for shear", above=0)
     ] = None
     second_shear_stiffness: Annotated[
         Along | None,
-        Varying("N", "kappa G A2", "shear stiffness in the direction across; by default the first", above=0),
+        Varying("N", "kappa G A2", "shear stiffness, second direction; default: shear_stiffness", above=0),
     ] = None
     rotary_inertia: Annotated[
         Along | None, Varying("kg m", "rho I", "rotary inertia of the section per length", above=0)
     ] = None
     second_rotary_inertia: Annotated[
-        Along | None, Varying("kg m", "rho I2", "rotary inertia for bending in the direction across", above=0)
+        Along | None, Varying("kg m", "rho I2", "rotary inertia for bending in the second direction", above=0)
     ] = None
     torsion_stiffness: Annotated[
         Along | None, Varying("N m2", "G J", "stiffness against torsion", above=0)
@@ -264,14 +264,14 @@ class StiffnessInput(_BeamInput):
     ] = None
     mass_offset: Annotated[
         Along | None,
-        Varying("m", "c", "offset of mass centre from shear centre, in the direction across, for torsion"),
+        Varying("m", "c", "offset of mass from shear centre across the bending direction, for torsion"),
     ] = None
     tension_offset: Annotated[
         Along | None,
         Varying(
             "m",
             "t",
-            "offset of tension centre from shear centre, across; bending stiffness is about the former",
+            "offset of tension from shear centre, across; bending stiffness is about the tension centre",
         ),
     ] = None
 
@@ -421,8 +421,8 @@ def _one_kind_of_beam(given: Any) -> Any:
         raise ValueError(f"give either matrices or {', '.join(section + stiffness)}, not both")
     if section and stiffness:
         raise ValueError(
-            f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam "
-            f"either by {_needed(RectangularInput)} or by {_needed(StiffnessInput)}, with what goes with them"
+            f"{', '.join(section)} and {', '.join(stiffness)} do not go together; describe the beam either "
+            f"by {_needed(RectangularInput)} or by {_needed(StiffnessInput)}, with other keys of that kind"
         )
     return given
 

@@ -52,8 +52,8 @@ def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[
     Raises
     ------
     ConfigError
-        If a number has no line of its own that could be replaced, as an entry of a list, or the factor
-        "scale" on a property along the beam.
+        If a number has no line of its own that could be replaced, because it is an entry of a list or the
+        factor "scale" of a property along the beam.
     """
     lines = text.splitlines()
     for path, value in values.items():
@@ -158,7 +158,7 @@ def with_station_file(data: dict[str, Any], path: str | PathLike[str]) -> dict[s
 
 
 class RecordedQuantity(Quantity):
-    """A number in a recorded time series, whose unit conversion is computed only once."""
+    """A quantity in a recorded time series; the conversion of a unit is computed once for all numbers."""
 
     def parse(self, given: object) -> float:
         """Convert a number with a unit to SI units."""
@@ -211,7 +211,7 @@ def _with_columns(motion: dict[str, Any], place: str, path: str | PathLike[str])
     name, known = motion[FILE], _lists_of(motion.get("kind"))
     if not known:
         kinds = " or ".join(f'"{kind}"' for kind in KINDS if _lists_of(kind))
-        raise InvalidInput(f"{place}.{FILE}", name, f"this kind of motion has no record; give kind = {kinds}")
+        raise InvalidInput(f"{place}.{FILE}", name, f"this kind of motion reads no file; give kind = {kinds}")
     if given := [key for key in known if key in motion]:
         raise InvalidInput(f"{place}.{given[0]}", "", f"the file {name} has this column, too; give it once")
     columns = read_record(named_file(path, f"{place}.{FILE}", name), known)

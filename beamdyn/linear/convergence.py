@@ -30,7 +30,7 @@ from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
 from beamdyn.scene.validity import check_speeds
 
 _MODES = 5  # number of modes for which physics and trial functions are chosen, if all functions are kept
-_STRAIGHT = "linear models are of small motions about the straight beam"
+_STRAIGHT = "linear models describe small motions about the straight beam"
 _OR_ALL = Named("or None, which keeps all functions", "or auto")
 
 
@@ -79,7 +79,8 @@ def model_at_speed(
 ) -> ModelAtSpeed:
     """Build the linear model of a scene with a number of modes.
 
-    Trial functions are chosen by the modes of the undamped beam.  For the tolerance see `natural_modes`.
+    Trial functions are chosen to resolve the modes of the undamped beam.  For the tolerance see
+    `natural_modes`.
 
     Raises
     ------
@@ -108,8 +109,8 @@ Evaluation = Callable[[ModelAtSpeed], np.ndarray]
 # A model, its value, the model with twice as many modes (None if there is none), and that model's value.
 _Doubled: TypeAlias = tuple[ModelAtSpeed, np.ndarray, ModelAtSpeed | None, np.ndarray | None]
 
-# Smallest number of modes for modes="auto"; at a loose tolerance, trial functions are first chosen for so
-# many.
+# Smallest number of modes for modes="auto"; at a loose tolerance, trial functions are first chosen for this
+# number of modes.
 _FIRST = 4
 _ACCURATE = 8  # number of modes for which trial functions are first chosen at the default tolerance
 _MOST = 40  # number of modes beyond which a model is not refined further
@@ -118,8 +119,8 @@ _MOST = 40  # number of modes beyond which a model is not refined further
 _OF_FREQUENCIES = 0.01
 # Tolerance at and below which the default models are used, with a margin for rounding.
 _DEFAULT = 1.001 * DEFAULT_TARGET
-# Factor on the tolerance of natural frequencies, by which trial functions are chosen, each time that the
-# error of a response exceeds its tolerance.
+# Trial functions are chosen to meet a tolerance of the natural frequencies.  That tolerance is multiplied by
+# this factor each time that the error of a response exceeds its own tolerance.
 _FINER = 1e-3
 _MASSLESS = 1e-12  # smallest nonzero eigenvalue of the mass matrix, relative to the largest
 _ROUNDING = 1e-12  # rounding error of a value relative to the largest value
@@ -134,7 +135,8 @@ class Refined:
     model : ModelAtSpeed
         The model.
     larger : ModelAtSpeed or None
-        Model with more modes, or with all trial functions; None if `model` has all, or there is none.
+        Model with more modes, or with all trial functions; None if `model` has all trial functions, or no
+        larger model can be built.
     value, error : ndarray
         The value and its estimated error, of one shape.
     truncation : float
@@ -213,9 +215,10 @@ def evaluate_accurately(
 def _model_up_to(
     scene: Scene, speed: float, top: float, discretization: DiscretizationChoice, target: float
 ) -> ModelAtSpeed:
-    """Build a model that resolves modes up to an angular frequency [rad/s], or up to a largest number.
+    """Build a model that resolves the modes up to the angular frequency `top` [rad/s], but at most `_MOST`.
 
-    Trial functions are chosen for relative errors of the natural frequencies up to `target`.
+    A discretization given as an object is not refined for this.  Trial functions are chosen for relative
+    errors of the natural frequencies up to `target`.
     """
     tolerance = target if target > _DEFAULT else None
 

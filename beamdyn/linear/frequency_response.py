@@ -237,6 +237,6 @@ def _warnings(scene: Scene, tolerance: float, modes: int | str | None, refined: 
     largest = np.abs(refined.value).max()
     if isinstance(modes, str) and refined.truncation > tolerance * largest:
         yield (
-            f"tolerance = {tolerance:g} is not reached: the estimated error by the modes left out is "
+            f"tolerance = {tolerance:g} is not reached: the estimated error due to modes left out is "
             f"{refined.truncation / largest:.1g} of the largest response"
         )

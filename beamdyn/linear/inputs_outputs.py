@@ -24,7 +24,7 @@ BaseDirection = Literal["bending", "across", "n1", "n2", "n3"]
 _FIXED: tuple[str, ...] = ("n1", "n2", "n3")
 _ROTATING: dict[str, Quantity] = {"bending": "root_transverse", "across": "root_across"}
 _ACCELERATIONS: tuple[Quantity, ...] = ("root_axial", "root_transverse", "root_across")
-_NEGLIGIBLE = 1e-15  # component of a unit acceleration that is 0 within rounding
+_NEGLIGIBLE = 1e-15  # size up to which a component of a unit acceleration counts as 0
 
 Accelerations: TypeAlias = "dict[Quantity, complex]"  # accelerations of the root, per unit of the input
 
@@ -87,7 +87,7 @@ class BaseMotion:
 
 
 def _of_unit(mount: Mount, angle: float, direction: str) -> Accelerations:
-    """Compute the root's accelerations by a unit acceleration in a fixed direction, at a rotation angle."""
+    """Compute the root's accelerations, at a rotation angle, for a unit acceleration in a fixed direction."""
     unit, zero = np.zeros(3), np.zeros(())
     unit[_FIXED.index(direction)] = 1.0
     root = root_motion(mount, MotionSample(np.array(angle), zero, zero, unit))

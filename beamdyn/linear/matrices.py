@@ -62,9 +62,9 @@ class Matrices(SceneResult, StatesModelError):
         Loss of K for each m/s2 by which the root accelerates along the beam, beyond the steady rotation:
         the parametric term of translation and gravity [unit of K / (m/s2)].
     static_load : ndarray, shape (n,)
-        Load f by the steady rotation [units of the rows].
+        Load f due to the steady rotation [units of the rows].
     input_matrix : ndarray, shape (n, inputs)
-        Input matrix B: load by a unit of each input [unit of the row / unit of the input].
+        Input matrix B: load due to a unit of each input [unit of the row / unit of the input].
     inputs : tuple of str
         The inputs u, with units.
     coordinates, rows : tuple of str
@@ -193,7 +193,8 @@ def matrices(
     Raises
     ------
     ValueError
-        If an argument is out of its range, or an input is periodic at this speed.
+        If an argument is out of its range, or an input in a fixed direction acts on the rotating beam, so
+        that the input matrix would vary.
 
     References
     ----------
@@ -271,8 +272,8 @@ def steady_drive(model: ModelAtSpeed, excitation: Excitation) -> HarmonicDrive:
     An excitation of fixed direction is refused, because its input matrix would vary as the beam turns.
     """
     drives = model.drives(excitation)
-    bound = "on the rotating beam its input matrix varies: it acts at its frequency plus and minus the speed"
-    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts it'
+    bound = "the input matrix would vary, as the load has the input's frequency plus and minus the speed"
+    remedy = 'give "bending", "across" or "n3", or speed = 0; frequency_response accepts this input'
     refuse(list(drives) != [0], "speed", model.speed, "rad/s", f"{excitation.label}: {bound}", remedy)
     return drives[0]
 

@@ -95,7 +95,7 @@ class PartialFractions:
     def mean_square_of_white(self, density: float) -> float:
         """Compute the mean square for a constant one-sided density at all frequencies.
 
-        It leaves out the direct term, which would make it infinite.
+        The direct term is left out, as it would make the mean square infinite.
         """
         proper = PartialFractions(0.0, self.residues, self.poles)
         return density / 2 * float(np.real(proper.of_square.sum()))
@@ -224,7 +224,7 @@ class ParametricTerm:
     stiffness_variation : float
         Root mean square of the random variation of the squared lowest frequency, relative to it.
     by_gravity : float
-        Relative amplitude of the variation of the squared lowest frequency by gravity as the beam turns.
+        Relative amplitude of the variation of the squared lowest frequency due to gravity as the beam turns.
     rms_change : float
         Estimated relative change of the root mean square of the lowest mode by the random variation; inf
         where it would grow without limit.
@@ -253,7 +253,7 @@ class ParametricTerm:
         if self.by_gravity > _LARGE:
             yield (
                 f"gravity along the beam varies the lowest squared frequency by {self.by_gravity:.1%} "
-                "within a turn, which is left out"
+                "within a turn; the linear model leaves this out"
             )
 
 

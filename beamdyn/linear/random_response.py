@@ -162,8 +162,9 @@ def random_response(
     ------
     ValueError
         If an argument is out of its range, a density is negative, a mode is not damped, the speed is past
-        the critical speed, or a road is given without a wheel, or with white noise an output
-        whose mean square is not finite: all but deflections and the voltage of a harvester.
+        the critical speed, or a road is given without a wheel.  With white noise, also if the output is
+        neither a deflection nor the voltage of a harvester: its mean square is then not finite, or needs all
+        modes.
 
     References
     ----------
@@ -248,7 +249,7 @@ def root_mean_squares(
         As for `random_response`, checked.
     drive, spectrum
         The input and its density, as `spectra.random_input` gives them.
-    outputs : sequence of DeflectionAt, HarvestedVoltage or another
+    outputs : sequence of DeflectionAt, HarvestedVoltage or another output
         The quantities whose root mean squares are wanted.
 
     Raises

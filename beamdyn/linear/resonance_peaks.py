@@ -54,7 +54,7 @@ class ResonancePeaks:
 
     The peaks are all local maxima of each harmonic's magnitude: a mode in the flank of a higher neighbour
     without a maximum of its own has none.  Two minima closer to each other than a tenth of their distance to
-    the nearest pole may be taken for one, and a peak between them be missed.
+    the nearest pole may be taken for one, and a peak between them may be missed.
 
     Parameters
     ----------
@@ -218,7 +218,7 @@ class HarmonicMagnitude:
         return respond(self.model, self.drive, self.seen, self._s(f))
 
     def rounding(self, f: np.ndarray) -> np.ndarray:
-        """Compute the relative difference of the sum over poles from the equations' solution at f [Hz]."""
+        """Compute the relative difference between sum over poles and solution of the equations at f [Hz]."""
         value = self.solved(f)
         distance = np.abs(self.total(self._s(f))[0] - value)
         return np.divide(distance, np.abs(value), out=np.full(len(f), np.inf), where=value != 0)

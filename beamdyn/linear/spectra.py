@@ -297,8 +297,8 @@ _STEP = 0.02  # relative step between listed frequencies of the input
 _STEEPEST = 0.1
 _DECADES = 3  # number of decades in which frequencies are listed for an interval that begins at 0
 _CLOSE = 0.2  # step near a resonance, relative to the larger of its half bandwidth and the distance from it
-# Range on each side of a resonance in which listed frequencies are dense: its frequency plus this number of
-# half bandwidths.
+# Frequencies about a resonance are listed up to a distance from it on both sides: the resonance frequency
+# plus this number of half bandwidths.
 _REACH = 30.0
 # Relative distance between the end of an input's range and a listed frequency just outside it, at which the
 # density is 0.

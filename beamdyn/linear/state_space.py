@@ -78,7 +78,7 @@ def state_space(
     The states x are the coordinates of `matrices` with the same arguments, then their rates.  D contains
     the residual flexibility, by which modes left out follow without delay, so that the response to a constant
     input is that of the whole discretization: Craig and Kurdila, Fundamentals of Structural Dynamics (2006),
-    section 11.4.  The static deflection by the rotation itself is not included.
+    section 11.4.  The static deflection due to the rotation itself is not included.
 
     Parameters
     ----------
@@ -106,8 +106,8 @@ def state_space(
     Raises
     ------
     ValueError
-        If an argument is out of its range, an input is periodic at this speed, or a retained coordinate has
-        no mass.
+        If an argument is out of its range, an input in a fixed direction acts on the rotating beam, so that
+        the matrix B would vary, or a retained coordinate has no mass.
 
     References
     ----------

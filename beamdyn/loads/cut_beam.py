@@ -100,7 +100,7 @@ class CutSpace(SampledSpace):
 
     @property
     def coarse(self) -> None:
-        """Indices of a coarser discretization's functions: None, because nothing is solved here."""
+        """Indices of a coarser discretization's functions: None, because no equations are solved here."""
         return None
 
     @cached_property
@@ -124,7 +124,7 @@ class CutSpace(SampledSpace):
         return self.evaluate(np.ones(1), order)[:, 0]
 
     def evaluate(self, xi: np.ndarray, order: int = 0) -> np.ndarray:
-        """Evaluate `order`-th derivatives by x/L, without delta functions: one row for each function."""
+        """Evaluate the `order`-th derivative of each function (row) at xi, leaving out delta functions."""
         stations = self.quadrature.stations
         cut, least = stations.xi[:, None], stations.xi + np.where(stations.inboard, -_TOUCHING, _TOUCHING)
         moved = (np.asarray(xi) > least[:, None]).astype(float)  # 1 for points outboard of each cut
@@ -183,9 +183,10 @@ class CutSpaces:
     def product(
         self, weight: Profile, rows: RootConditions, columns: RootConditions, orders: tuple[int, int] = (0, 0)
     ) -> np.ndarray:
-        """Integrate over x/L a weight times derivatives of two functions, for each function of two sets.
+        """Integrate a weight times derivatives of two functions over x/L, for all pairs of functions.
 
-        `rows` and `columns` are the root conditions of the two sets, `orders` the orders of the derivatives.
+        The rows of the result are functions with the root conditions `rows`, its columns are functions with
+        the root conditions `columns`; `orders` are the orders of the two derivatives.
         """
         return self.functions(rows).product(self.functions(columns), weight, orders)
 

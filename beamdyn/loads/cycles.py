@@ -74,7 +74,8 @@ class LoadCycles(SceneResult, JudgedByRepeating):
     end: float
     error: float = field(default=math.nan, metadata=ADDED_LATER)
 
-    loads: ClassVar[TransientLoads | None] = None  # the counted loads; None after loading from a file
+    # The loads whose cycles are counted; None in a result read from a file.
+    loads: ClassVar[TransientLoads | None] = None
 
     def headline(self) -> Iterator[str]:
         """Yield number of cycles, position and largest range for a one-line summary.
@@ -102,7 +103,11 @@ class LoadCycles(SceneResult, JudgedByRepeating):
         return known or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate the largest range with large deflection, from the change of the tip deflection."""
+        """Estimate the largest range with large deflection, from the change of the tip deflection.
+
+        `straight` is the largest range of the straight beam; it is returned, with the given `reason`, if no
+        estimate is possible.
+        """
         assert self.loads is not None, "the result was made by count_cycles"
         return self.loads.bent_values(straight, reason)
 

@@ -24,7 +24,7 @@ _COMPARED = 4000  # largest number of times at which two simulations are compare
 _BATCH = 500  # number of times evaluated at once
 _REFINEMENTS, _FINE = 3, 17  # number of refinements of a maximum, and of grid points in each
 _OF_TURNING_POINTS = 2  # number of refinements of a turning point: values within 1e-6 of the largest range
-_BETWEEN_SAMPLES = 4  # number of times for each sample of the run at which turning points are sought
+_BETWEEN_SAMPLES = 4  # number of instants per sample of the run at which turning points are sought
 # Time before the end of a segment at which loads are evaluated, as a fraction of its duration: at the end
 # itself they may jump.
 _BEFORE_JUMP = 1e-9
@@ -95,7 +95,7 @@ class LoadPath(FieldsOnly):
         signs = np.sign(np.diff(values))
         rising = np.flatnonzero(signs)  # on a plateau, only the first sample is the turning point
         turns = 1 + rising[:-1][signs[rising[:-1]] != signs[rising[1:]]]
-        # A second value is added because rainflow counting needs more than two values.
+        # The second value is kept, too, because rainflow counting needs more than two values in all.
         found = [values[:2], values[-1:]]
         for k in _batches(turns):
             sign = signs[k - 1, None]

@@ -38,7 +38,7 @@ from beamdyn.scene.sections import weight_degree
 STRAIGHT = "loads along the span of a beam with large deflection are not computed"
 _LEAVE_OUT = "leave it out; root moments have it"
 _OF_TAPERED = (
-    "loads along the span are computed with it only if the width is constant, without piezoelectric layers"
+    "loads along the span include camber only if the width is constant, without piezoelectric layers"
 )
 
 ByQuantity: TypeAlias = "dict[Quantity, np.ndarray]"
@@ -266,14 +266,14 @@ def _lacks_camber(scene: Scene) -> bool:
 def refuse_uncovered_camber(scene: Scene) -> None:
     """Refuse camber if loads along the span cannot be computed with it."""
     if scene.physics.camber and _lacks_camber(scene):
-        instead = 'physics = "auto" has chosen it: give the physics without it'
+        instead = 'physics = "auto" has chosen camber: give the physics without it'
         remedy = _LEAVE_OUT if scene.physics_choice is None else instead
         raise InvalidValue("physics.camber", True, _OF_TAPERED, remedy)
 
 
 def _refuse_uncovered(scene: Scene) -> None:
     """Refuse springs along the span and damping that is not modal: the rows do not contain their forces."""
-    bound = "loads along the span cannot be computed with it"
+    bound = "loads along the span cannot be computed with this input"
     if scene.beam.point_springs:
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, _LEAVE_OUT)
     for name in ("mass_factor", "stiffness_factor", "tip_damper"):

@@ -81,7 +81,7 @@ def test_refusal_is_seen_at_the_field_that_was_changed(opened, width):
     page = opened("beamdyn", width=width)
     length = field(page, "length, L")
     length.fill("300")
-    said = "the cause is the new beam.length, which was 50 mm: change either"
+    said = "the cause is beam.length, changed from 50 mm: change either"
     marked = page.locator(".q-field--error:visible")
     expect(marked).to_have_count(1)
     expect(marked).to_contain_text(said)

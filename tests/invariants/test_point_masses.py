@@ -326,7 +326,7 @@ def test_one_at_the_tip_keeps_it_in_tension() -> None:
 
 def test_terms_name_them() -> None:
     scene = bd.Scene(uniform(bd.PointMass(0.7, 0.3), bd.PointMass(0.4, 0.1)), OUTWARD)
-    said = "always; 0.4 kg of it in point masses at x = 0.4 and 0.7 m"
+    said = "always; 0.4 kg of the mass is in point masses at x = 0.4 and 0.7 m"
     assert bd.terms(scene)["mass"].reason == said
     many = uniform(*(bd.PointMass(0.1 * k, 0.1) for k in range(1, 9)))
     assert bd.terms(bd.Scene(many))["mass"].reason.endswith("at 8 places from x = 0.1 m to 0.8 m")

@@ -120,7 +120,7 @@ REFUSED = [
         {"primary_dat": written.primary_file(members=("1 3",))},
         r"the members have 3 key points, but kp_total .* 4",
     ),
-    ({"primary_dat": written.primary_file(members=("1 5",))}, r"line 6: expected 3 key points or more"),
+    ({"primary_dat": written.primary_file(members=("1 5",))}, r"line 6: expected at least 3 key points"),
 ]
 
 

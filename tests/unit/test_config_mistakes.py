@@ -107,7 +107,7 @@ from tests.unit.toml_scenes import (
         (
             "beam.point_mass",
             {"position": "1 mm", "mass": "1 g"},
-            'beam.point_mass = { position = "1 mm", mass = "1 g" }: give a table [[beam.point_mass]] in two',
+            'beam.point_mass = { position = "1 mm", mass = "1 g" }: give [[beam.point_mass]] in double',
         ),
         (
             "beam.point_mass",

@@ -269,7 +269,7 @@ def test_a_bad_record_is_named_by_its_line(tmp_path, case):
 
 
 def test_a_motion_without_lists_names_no_file(tmp_path):
-    with pytest.raises(bd.ConfigError, match="this kind of motion has no record"):
+    with pytest.raises(bd.ConfigError, match="this kind of motion reads no file"):
         scene_with(tmp_path, RECORDED + 'kind = "steady"\nfile = "r.csv"\n', "t [s]\n0\n")
 
 

@@ -67,7 +67,7 @@ def test_a_list_of_modes_of_ansys_has_a_speed_for_each_load_step(read):
         ("speed [rpm], amplitude [mm]\n0, 62.1\n", "line 1: unknown column 'amplitude'; known are speed"),
         ("speed [rpm], uncertainty [Hz]\n0, 1\n", "line 1: expected a column such as 'frequency 1"),
         ("f1 [Hz], f2 [Hz]\n62, 390\n60, 385\n", "line 1: expected a column 'speed"),
-        (LIST, "expected a column 'speed .* or 2 speeds with the file, found none"),
+        (LIST, "expected a column 'speed .* or 2 speeds given with the file, found none"),
         (LIST.replace("65.230", "0.0000"), "line 3: expected a frequency above 0"),
     ],
 )

@@ -217,7 +217,7 @@ def test_one_line():
     found = bd.spread(SCENE, {"beam.thickness": "+-2%", "mount.radius": "+-1%"}, **FEW)
     low, high = found.first_order.smallest[0], found.first_order.largest[0]
     assert repr(found) == (
-        f"SceneSpread(mode 1 of 512 designs: {low:.2f} to {high:.2f} Hz first order, "
+        f"SceneSpread(mode 1 of 512 designs: first order {low:.2f} to {high:.2f} Hz, "
         "beam.thickness matters most)"
     )
 

@@ -108,13 +108,13 @@ def test_every_term_of_the_equations_has_a_meaning() -> None:
 @pytest.mark.parametrize(
     "scene, name, words",
     [
-        (HARVESTER, "root acceleration", "no setting angle, so no static load"),
+        (HARVESTER, "root acceleration", "the beam is radial, so no static load"),
         (HARVESTER, "damping", "no damping"),
         (HARVESTER, "spin of the tip body", "no tip body"),
         (SCENES["on a hinge"], "root spring", "the root is a hinge: it turns freely"),
         (HARVESTER, "root spring", "the root is clamped"),
         (SCENES["two planes"], "root spring", "the root is clamped"),
-        (HINGED_IN_ONE, "root spring", "clamped or a hinge"),
+        (HINGED_IN_ONE, "root spring", "clamped in one plane, hinged in the other"),
         (SCENES["two planes, straight"], "twisting by inertia", "no product of inertia"),
         (HARVESTER, "angular acceleration", "constant speed"),
         (turned(bending=math.pi / 2), "spin softening", "bending angle is 90 deg"),

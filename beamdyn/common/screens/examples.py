@@ -38,7 +38,8 @@ class Example:
     text: str
 
 
-# Examples that each program can open, by its name; they are stored, as checking the files takes a second.
+# Examples that each program can open, by name of the program.  They are kept here, since finding out which
+# files a program can open takes a second.
 _KNOWN: dict[str, tuple[Example, ...]] = {}
 
 

@@ -19,7 +19,7 @@ from beamdyn.common.screens.processes import RunsTasks
 from beamdyn.common.screens.screens import Backwards, Screen
 from beamdyn.common.screens.sweep_panel import inputs_with_value
 
-_WITHIN = "from:to:samples unit; if empty, from a tenth to ten times the value of the input"
+_WITHIN = "from:to:samples unit, such as 10:30:9 km/h; if empty, a tenth to ten times the present value"
 
 
 class FindPanel:
@@ -40,8 +40,8 @@ class FindPanel:
     def __init__(self, work: OpenDocument, screen: Screen, backwards: Backwards, solver: RunsTasks) -> None:
         self.work, self.screen, self.backwards, self._solver = work, screen, backwards, solver
         self._way = LatestComputation(self._settle, self._fail, self._tell)
-        self._asked: Entries | None = None  # field texts for which the last search was started
-        self._units: dict[str, str] = {}  # units of the available results
+        self._asked: Entries | None = None  # texts of the form's fields when the last search was started
+        self._units: dict[str, str] = {}  # unit of each available result, by its name
         self._fold: Any = ui.expansion("Find an input", on_value_change=self.state)
         with self._fold.classes("w-full section").props("dense"):
             with ui.row().classes("w-full"):
@@ -53,7 +53,7 @@ class FindPanel:
             with ui.row().classes("items-center"):
                 ui.button("Find", on_click=self.ask).props("no-caps")
                 self._busy = BusyRow(self.close, "searching")
-            self._late: Any = ui.label("An input has changed since: this answer is stale.").classes("status")
+            self._late: Any = ui.label("This answer is outdated: an input has changed.").classes("status")
             self._found: Any = ui.html("", sanitize=False).classes("w-full shown").props('role="alert"')
         self._tell()
 
@@ -67,7 +67,7 @@ class FindPanel:
             return
         needed = self.work.needed(self.screen)
         self._offer(self._input, [*inputs_with_value(self.work, self.screen)])
-        with suppress(ConfigError):  # the screen itself shows the error
+        with suppress(ConfigError):  # an error in the design, which the screen itself shows
             self._units = dict(self.backwards.units(tables_of(needed, self.work.inputs)))
             self._offer(self._result, [*self._units])
             self._name_unit()
@@ -101,7 +101,10 @@ class FindPanel:
         self._busy.show(self._way.slow, self._way.words)
 
     def _settle(self, future: asyncio.Future[str], last: bool) -> None:
-        """Show the input value that the search has found, or the reason why it found none."""
+        """Show the input value that the search has found, or the reason why it found none.
+
+        `future` is that of the finished search; `last` tells whether no newer search was requested.
+        """
         if self._found.is_deleted:
             return
         self._tell()

@@ -147,7 +147,7 @@ class Form:
                 return None
 
         def write(at: float | None) -> None:
-            if at is not None and at != place():  # skip a slider that only follows the field
+            if at is not None and at != place():  # write nothing if the slider only follows the field
                 field.set_value(f"{at:g} {drag.unit}".rstrip())
 
         def hold(held: bool) -> None:
@@ -223,7 +223,7 @@ class Form:
         self._changed(entry.path, read.text)
 
     def _read(self, path: str) -> form_entries.Reading:
-        """Return the text of a field as the form understands it."""
+        """Return how the form understands the text of a field."""
         typed = self.fields[path].value or ""
         return form_entries.read_entry(typed, self._inputs[path], self._units.get(path, ""))
 

@@ -37,7 +37,7 @@ _UNITS = {
 
 
 def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
-    """Return the field texts for TOML tables; values without a field are included, too."""
+    """Return the field texts for TOML tables, also for values that have no field in the form."""
     found = {entry.path: "" for entry in inputs}
     leaves = {*found}
 

@@ -136,7 +136,7 @@ def draw_sheet(
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)
             marks = len(screen.slider.marks) if screen.slider is not None and view is None else 0
-            if marks:  # the first drawing gets room for its shapes at all marks of the slider
+            if marks:  # give the first drawing room for what it shows at every mark of the slider
                 corners = [screen.drawings(answer, float(mark))[0][0].extent() for mark in range(marks)]
                 rows = _with_first(rows, room=np.vstack(corners))
             rows = with_ghost(rows, other, name) if other else rows

@@ -70,7 +70,10 @@ class History:
         self._changed = frozenset()
 
     def go(self, steps: int) -> Entries | None:
-        """Go a number of steps forward, or back if negative; return that state, None if there is none."""
+        """Go a number of steps forward, or back if negative; return the state there.
+
+        If there is no such state, return None and stay.
+        """
         if not 0 <= self._place + steps < len(self._states):
             return None
         self._place += steps
@@ -238,7 +241,7 @@ class OpenDocument:
         self._replace_entries(self.entries | {path: text})
 
     def _replace_entries(self, entries: Entries) -> None:
-        """Replace the field texts; texts without an input are ignored."""
+        """Replace the field texts; ignore texts whose path is not the path of an input."""
         self.entries = {entry.path: entries.get(entry.path, "") for entry in self.document.inputs(entries)}
 
     def needed(self, screen: Screen) -> Entries:
@@ -254,7 +257,7 @@ class OpenDocument:
         return not self.drawn(screen) or not self.answered[screen.name].is_whole
 
     def drawn(self, screen: Screen) -> bool:
-        """Return whether a screen has a result for the present field texts, at least one for the drawing."""
+        """Return whether a screen has a complete or preliminary result for the present field texts."""
         last = self.answered.get(screen.name)
         return last is not None and last.entries == self.needed(screen)
 

@@ -249,7 +249,7 @@ class Page:
         self.header.mark(stale, self.work.history, self.work.other)
 
     def _bring(self, document: Document) -> None:
-        """Show the screens of a kind of file whose design has been replaced."""
+        """Show the new design of a kind of file, on its first screen unless one of its screens is shown."""
         if self.current[0] is not document:
             self._bar.set_value(document.screens[0].name)
         self._rebuild(document)
@@ -297,11 +297,11 @@ class Page:
         ui.notify(f"{name} is open")
 
     def save(self) -> None:
-        """Download the design that is shown as a TOML file."""
+        """Download the present design in a TOML file."""
         ui.download.content(self.work.file().encode(), f"{self.work.document.name}.toml")
 
     def report(self) -> None:
-        """Download the HTML report on the design that is shown, after all its screens are computed."""
+        """Download the HTML report on the present design, after all its screens are computed."""
         document = self.current[0]
         self._making.want(f"{document.name}.html", lambda: asyncio.ensure_future(self._report_on(document)))
 
@@ -371,7 +371,7 @@ class Page:
         self._entered()
 
     def stop_comparing(self) -> None:
-        """End the comparison of the design that is shown with another one."""
+        """End the comparison of the present design with another design."""
         self.work.compare(None)
         for screen in self.current[0].screens:
             self.panels[screen.name].show()
@@ -400,7 +400,7 @@ class Page:
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)
         typed, designs = stored.get("typed", {}), stored.get("designs", {})
-        for name, work in self.works.items():  # unfinished input is restored before any design is stored
+        for name, work in self.works.items():  # restore unfinished texts before storing: it would drop them
             entries = designs.get(name, work.document.base_entries)
             if work.recall(read_typed(typed.get(name), entries, work.document.inputs(entries))):
                 self._rebuild(work.document)

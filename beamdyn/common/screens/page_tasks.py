@@ -111,7 +111,7 @@ def rows_file(document: Document, screen: Screen, answer: Any) -> str:
 
 
 def drawing_file(document: Document, screen: Screen, answer: Any, place: float, kind: str) -> bytes:
-    """Return the drawing of a result as an "svg" or "png" file."""
+    """Return the drawing of a result at the slider's position `place`, as an "svg" or "png" file."""
     return png(screen.draw(answer, place)) if kind == "png" else drawn(screen, answer, place).encode()
 
 
@@ -132,7 +132,7 @@ def report(
 ) -> str:
     """Return the HTML report on a design.
 
-    Its results `answered` are by name of the screen; `sweeps` are the sweeps to include.
+    `answered` has the results to include, by name of the screen; `sweeps` are the sweeps to include.
     """
     work = _opened(document, entries)
     work.answered = dict(answered)
@@ -238,7 +238,7 @@ def at_fault(work: OpenDocument, screen: Screen) -> dict[str, list[str]]:
         return dict.fromkeys(since, mistakes[""]) | mistakes
     if not 0 < len(since) <= _FEW or not mistakes or {*since} & {*mistakes}:
         return mistakes
-    causes = {path: f"the cause is the new {path}, which was {_before(work, screen, path)}" for path in since}
+    causes = {path: f"the cause is {path}, changed from {_before(work, screen, path)}" for path in since}
     sentences = [said for each in mistakes.values() for said in each]
     return {path: [f"{said}; {cause}: change either" for said in sentences] for path, cause in causes.items()}
 

@@ -31,7 +31,7 @@ class PageWriter:
 
     @property
     def is_ahead(self) -> bool:
-        """Return whether something is held, or NiceGUI has not yet received all changes."""
+        """Return whether a handle or slider is held, or NiceGUI has not yet received all changes."""
         return self._held() or bool(self._untold)
 
     @contextmanager
@@ -41,7 +41,7 @@ class PageWriter:
         Changes of text, content, style, classes, attributes and field texts are written; changes of other
         properties are not.
         """
-        # An element that already has such an `update` belongs to an outer context, which writes its changes.
+        # An element whose `update` is already replaced belongs to an outer context, which writes its changes.
         elements = tuple(e for e in elements if "update" not in vars(e))
         if not elements or not self.is_ahead:
             yield
@@ -49,7 +49,7 @@ class PageWriter:
         before = {element: _written(element) for element in elements}
         for element in elements:
             element.update = partial(self.tell_later, element)
-            element.run_method = _do_nothing  # a text field would update the page by it
+            element.run_method = _do_nothing  # text fields call it to update the page
         try:
             yield
         finally:
@@ -62,7 +62,7 @@ class PageWriter:
             self.synchronize()
 
     def tell_later(self, element: Any) -> None:
-        """Report a changed element to NiceGUI once nothing is held."""
+        """Report a changed element to NiceGUI once no handle or slider is held."""
         self._untold[element.id] = element
 
     def synchronize(self) -> None:

@@ -25,7 +25,7 @@ from beamdyn.common.screens.screens import Document, Program, Screen
 
 LONGEST = 120.0  # time limit of a computation [s]
 MEMORY = 800  # memory that a computation may use in addition to an idle process [MB]
-_MOST = max(3, (os.cpu_count() or 1) + 1)  # number of processes: one stays free during long computations
+_MOST = max(3, (os.cpu_count() or 1) + 1)  # largest number of processes, so that one stays free for others
 _NICE = 5  # niceness of the processes: the server and the browser have higher priority
 _HEEDS = 0.3  # time that an interrupted process has to stop its task, before it is terminated [s]
 _AGAIN = 0.03  # interval of repeated interrupts [s]: a process ignores them during imports
@@ -374,7 +374,7 @@ _INTERRUPTS = _Interrupts()
 def serve_tasks(caller: int) -> None:
     """Run tasks that arrive on standard input; end when the calling process ends, even within a task."""
 
-    def end_with_caller() -> None:  # the end of standard input would be noticed only between two tasks
+    def end_with_caller() -> None:  # in a thread: a running task does not notice the end of standard input
         while os.name == "nt" or os.getppid() == caller:  # on Windows the parent's id never changes
             sleep(1.0)
         os._exit(1)

@@ -200,7 +200,7 @@ class ScreenView:
         elif self._sketch is not None and path in self._choices:
             self._sketch.show(self.work.entries)
         self.form.hide(self.work.idle)
-        self._previews = self._drawn  # delays rendering of the page: the picture appears sooner
+        self._previews = self._drawn  # if True, the page is rendered later, and the picture appears sooner
         self.solve(held=self._holds)
         if not self._holds:  # while a slider is held, texts are neither stored nor reported to other screens
             self._edited()
@@ -295,7 +295,10 @@ class ScreenView:
             panel.close()
 
     def _settle(self, future: asyncio.Future[Any], last: bool) -> None:
-        """Show a finished result; if it failed, show why, and grey the old result."""
+        """Show a finished result; if it failed, show why, and grey the old result.
+
+        `last` tells whether no newer result was requested.
+        """
         if self._left.is_deleted:
             return
         outcome, before = outcome_of(future, self.work, self.screen), self._answered
@@ -304,7 +307,7 @@ class ScreenView:
         if last:
             self.board.forget_steps()
         is_part = False
-        # A preliminary result keeps the tables shown before.
+        # With a preliminary result, the tables of the result before stay on the page.
         if isinstance(outcome, ShownAnswer) and not outcome.is_whole:
             is_part, kept = True, before or outcome
             outcome = replace(outcome, tables=kept.tables, notes=kept.notes, rest=kept.rest)
@@ -319,7 +322,7 @@ class ScreenView:
             return self.solve()
         self.state()
         if not self.dragged:
-            self._writer.synchronize()  # here, so that the page is rendered only once
+            self._writer.synchronize()  # after all changes, so that the page is rendered only once
             self._edited()
 
     def _fail(self, error: Exception) -> None:
@@ -399,7 +402,7 @@ class ScreenView:
             self._headline.set_content(headline_of(self.work, self.screen, answered))
             self._good.props["data-solved"] = f"{crc32(repr(answered.entries).encode()):08x}"
             toggle(self._tables, "waits", not answered.is_whole)
-            self.state()  # inside this context, so that its changes are reported together with the others
+            self.state()  # within `writing`, so that its changes are sent to the page with the others
         if self._drawn_of != self._to_draw(answered):
             self._draw()
         if answered.picture:
@@ -470,7 +473,10 @@ class ScreenView:
         return self._branch.choose(answered.answer, self.screen.branches(answered.answer))
 
     def _moved(self, handle: Handle, target: Place, done: bool) -> None:
-        """Write the new position of a handle into the fields, and compute the result."""
+        """Write the new position of a handle into the fields, and compute the result.
+
+        `done` tells whether the user has released the handle.
+        """
         if self._player is not None:
             self._player.pause()
         texts = changed_texts(handle, target, self.work.entries, self.work.inputs)

@@ -82,7 +82,7 @@ class RequestGuard:
         if not refusal and (known or (is_page and path == "/" and scope["method"] == "GET")):
             await self.app(scope, receive, send)
         elif is_page:
-            sentence = refusal or "There is no such page; the program's only one is at /."
+            sentence = refusal or "There is no such page; the program's only page is at /."
             await PlainTextResponse(f"{sentence}\n", 403 if refusal else 404)(scope, receive, send)
         else:
             # A websocket that is closed before it is accepted gets the status 403.
@@ -181,8 +181,8 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
             language="en-US",
             show=browser,
             reload=False,
-            tailwind=False,  # Tailwind would scan the page after each change
-            # Compression would delay each message, and gains little within one computer.
+            tailwind=False,  # the CSS framework Tailwind would scan the page after each change
+            # No compression: it would delay each message, and gains little within one computer.
             ws_per_message_deflate=False,
             reconnect_timeout=30.0,
         )

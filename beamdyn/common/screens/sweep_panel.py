@@ -111,7 +111,7 @@ class SweepPanel:
                     take = partial(self._download, kind.lower())
                     ui.button(f"Sweep as {kind}", icon="download", on_click=take).props("flat no-caps")
             self._said: Any = ui.label().props('role="alert"').style("white-space: pre-line")
-            self._late: Any = ui.label("An input has changed since: this sweep is stale.").classes("status")
+            self._late: Any = ui.label("This sweep is outdated: an input has changed.").classes("status")
             self._good: Any = ui.element("div").classes("w-full")
             with self._good:
                 self._charts = ChartBoard(f"{screen.name}: charts of the sweep", PageWriter())
@@ -122,7 +122,7 @@ class SweepPanel:
             return
         paths, needed = [*self._inputs()], self.work.needed(self.screen)
         self._input.set_options(paths, value=self._input.value if self._input.value in paths else paths[0])
-        with suppress(ConfigError):  # the screen itself shows the error
+        with suppress(ConfigError):  # an error in the design, which the screen itself shows
             names = [*self.sweeps.names(tables_of(needed, self.work.inputs))]
             kept = [name for name in self._results.value if name in names]
             self._results.set_options(names, value=kept or names[:1])

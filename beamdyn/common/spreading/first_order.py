@@ -37,7 +37,7 @@ class Slopes:
         Derivatives (nan if unknown), and their absolute errors [unit of the result / unit of the input].
     exact : ndarray of bool, shape (d, k)
         Whether each derivative is computed from the equations; others are slopes of polynomials through
-        results of designs.
+        results of neighbouring designs.
     """
 
     value: np.ndarray
@@ -103,8 +103,9 @@ def _slope_weights(steps: np.ndarray) -> np.ndarray:
 def _parabola_weights(steps: np.ndarray) -> np.ndarray:
     """Compute weights of values at four steps whose weighted sum is the slope of a parabola at 0.
 
-    The parabola is 0 at 0, and passes through two of the values: that at the last step, and that at the first
-    step if this has the opposite sign, else at the second.  The other weights are 0.
+    The parabola is 0 at 0, and passes through two of the four values: the value at the last step, and the
+    value at the first step or, if the first and the last step have the same sign, at the second.  The weights
+    of the other values are 0.
     """
     used = [0, 3] if steps[0] * steps[3] < 0 else [1, 3]
     weights = np.zeros(len(steps))
@@ -135,7 +136,7 @@ class FirstOrderRange:
         Derivatives and their absolute errors [unit of the result / unit of the input].
     exact : ndarray of bool, shape (d, k)
         Whether each derivative is computed from the equations; others are slopes of polynomials through
-        results of designs.
+        results of neighbouring designs.
 
     References
     ----------

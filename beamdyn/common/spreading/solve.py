@@ -145,14 +145,15 @@ def _columns(inputs: Sequence[SpreadInput], designs: np.ndarray) -> dict[str, np
 
 @dataclass
 class _FurtherAnswers:
-    """Computes the designs of worst cases, and collects the warnings about them.
+    """Computes the results of designs for worst cases, and collects the warnings about them.
 
     A combination of inputs may be invalid even if each input is valid; such a design has no result.
     """
 
     evaluate: Evaluate
     inputs: Sequence[SpreadInput]
-    wanted: Any  # whether any earlier design has each result; else its absence is not reported
+    # For each result, whether any earlier design has it; only such a result is reported if it is missing.
+    wanted: Any
     _count: int = 0
     _without: dict[str, int] = field(default_factory=dict)
     _said: list[str] = field(default_factory=list)
@@ -240,9 +241,9 @@ def _notes(spread: Spread, error: np.ndarray) -> Iterator[str]:
             ended = (
                 f"a search that was ended after {worst.designs} designs" if worst.cut_short[k] else "a search"
             )
-            yield f"{name}: {why}, so that its worst cases come from {ended}: there may be worse"
+            yield f"{name}: {why}, so that its worst cases come from {ended}: worse designs may exist"
         if spread.scatter.deviation[k] <= error[k]:
-            yield f"{name}: it scatters by at most its numerical error, {error[k]:.1g}: no Sobol' indices"
+            yield f"{name}: no Sobol' indices, as its scatter is within its numerical error, {error[k]:.1g}"
 
 
 def _without_answer(spread: Spread) -> Iterator[str]:
@@ -253,7 +254,7 @@ def _without_answer(spread: Spread) -> Iterator[str]:
         if share == 1:
             said.setdefault(f"no random design has an answer ({why})", []).append(name)
         elif share:
-            rest = "the statistics are of the other designs, and there are no Sobol' indices"
+            rest = "the statistics cover only the other designs, and there are no Sobol' indices"
             sentence = f"{percent(share)} of the random designs have no answer ({why}); {rest}"
             said.setdefault(sentence, []).append(name)
     for sentence, names in said.items():

@@ -107,7 +107,7 @@ class Spread(Result):
         error = first.error[k] + np.nan_to_num(self.error[k], posinf=np.inf) * abs(self.nominal[k])
         ends = first.smallest[k], first.largest[k]
         low, high = (supported(end, error, _digits_of(*ends)) for end in ends)
-        yield f"{self.answers[k]} of {counted(self.designs, 'design')}: {low} to {high}{unit} first order"
+        yield f"{self.answers[k]} of {counted(self.designs, 'design')}: first order {low} to {high}{unit}"
         if names and len(self.inputs) > 1:
             yield f"{' and '.join(names)} matter{'s' * (len(names) == 1)} most"
         yield warned(self.warnings)
@@ -155,7 +155,7 @@ class Spread(Result):
 
 
 def _digits_of(low: float, high: float) -> int:
-    """Return the number of digits that shows both ends of a range to some percent of its width."""
+    """Return the number of significant digits that shows the ends of a range to some percent of its width."""
     with np.errstate(divide="ignore", invalid="ignore"):
         needed = 2 + np.log10(np.divide(max(abs(low), abs(high)), high - low))
     return int(np.clip(needed, _DIGITS, _MOST_DIGITS)) if np.isfinite(needed) else _DIGITS

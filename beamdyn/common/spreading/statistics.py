@@ -1,9 +1,9 @@
 """Statistics of the results of random designs, with their standard errors.
 
 The samples are divided into blocks of points that are scrambled independently, so that the scatter of the
-block means gives the error of the mean.  This needs no assumption on the results, and accounts for the lesser
-scatter of evenly distributed points.  A statistic is a mean or a ratio of means over blocks; its error
-follows by linearization.
+block means gives the error of the mean.  This needs no assumption on the results, and accounts for evenly
+distributed points, whose means scatter less than those of independent points.  A statistic is a mean or a
+ratio of means over blocks; its error follows by linearization.
 
 The designs are: random designs for statistics, the nominal design, and neighbouring designs for derivatives.
 
@@ -254,8 +254,9 @@ def mean_of_blocks(values: np.ndarray, weights: np.ndarray) -> tuple[float, floa
 def _percentile(values: np.ndarray, known: np.ndarray, share: float) -> tuple[float, float]:
     """Compute a percentile (the result below which a given fraction lies), and its standard error.
 
-    The error is the change of the percentile if the fraction is changed by its own standard error, which
-    follows from the scatter between blocks, combined with half a sample.
+    The error is the change of the percentile if the fraction is changed by its own error.  That error has two
+    parts, added as squares: the standard error from the scatter between blocks, and half the fraction of
+    one sample.
     """
     ordered = values[known]
     found = float(np.quantile(ordered, share))

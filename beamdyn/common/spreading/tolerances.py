@@ -22,7 +22,7 @@ _FORMS = 'give "+-2%", "+1% -2%", "0.9 to 1.1" with a unit, or "sd 1%"'
 
 _PREFIXES = {"G": 1e9, "M": 1e6, "k": 1e3, "c": 1e-2, "m": 1e-3, "u": 1e-6}  # factors of unit prefixes
 
-# A function that converts a number and a unit, as written, to SI; `InvalidValue` for a wrong unit.
+# A function that converts a number and a unit, as written, to SI; it raises `InvalidValue` for a wrong unit.
 Convert: TypeAlias = "Callable[[str, str], float]"
 
 
@@ -260,7 +260,7 @@ def check_holds(given: SpreadInput) -> None:
     """Raise an error if the nominal value is outside the tolerance."""
     low, high = given.distribution.ends
     if not low <= given.nominal <= high:
-        bound = "it does not contain the nominal value, {limit}"
+        bound = "the tolerance does not contain the nominal value, {limit}"
         remedy = "widen it, or change the value"
         raise InvalidValue(given.name, given.distribution, bound, remedy, given.unit, given.nominal)
 

@@ -103,7 +103,7 @@ class WorstCases:
 
 
 class _Case(NamedTuple):
-    """A design, its result, and the absolute error of the result; or several such cases."""
+    """A design, its result, and the absolute error of the result; or arrays of these for several designs."""
 
     at: np.ndarray
     value: float | np.ndarray
@@ -164,7 +164,10 @@ def worst_cases(
 def _corners(
     trends: np.ndarray, sense: int, low: np.ndarray, high: np.ndarray, nominal: np.ndarray
 ) -> np.ndarray:
-    """Return corners (rows) at which a result may be smallest (sense -1) or largest (sense 1)."""
+    """Return corners of the tolerance region (rows) at which a result may be smallest or largest.
+
+    `sense` is -1 for the smallest value, and 1 for the largest.
+    """
     rises, falls = trends == RISES, trends == FALLS
     up = rises if sense > 0 else falls
     at = np.where(up, high, np.where(rises | falls, low, nominal))
@@ -179,7 +182,7 @@ def _ends(
 ) -> Iterator[tuple[_Case, _Case]]:
     """Yield, for the smallest and the largest value of each result, the best corner and the best design.
 
-    The best design is chosen among the corners and the designs with known results.
+    The best design is chosen among the corners and `known`: designs, their results, and errors of these.
     """
     places = np.cumsum([len(part) for part in corners])[:-1]
     values, errors = (np.split(each, places) for each in answer(np.vstack(corners)))
@@ -203,21 +206,21 @@ def _best(cases: Iterable[np.ndarray], end: int) -> _Case:
 
 
 def _is_beaten(corner: _Case, best: _Case) -> bool:
-    """Return whether the best known design exceeds the best corner by more than the errors of both."""
+    """Return whether the best known design is better than the best corner by more than both errors."""
     near = sum(0.0 if np.isnan(each.error) else each.error for each in (corner, best))
     near = near + ROUNDING * np.abs(best.value)
     return bool(np.isfinite(best.value) and not np.abs(best.value - corner.value) <= near)
 
 
 def _widened(corner: _Case, best: _Case) -> _Case:
-    """Increase the error of the best corner by the amount by which the best known design exceeds it."""
+    """Increase the error of the best corner by its difference from the best known design."""
     return corner._replace(error=corner.error + np.abs(best.value - corner.value))
 
 
 def _search(
     start: _Case, rows: np.ndarray, ends: tuple[np.ndarray, np.ndarray], answer: Answer, most: int
 ) -> tuple[_Case, np.ndarray, int]:
-    """Improve S designs (S, d) by as many searches at once.
+    """Improve each of S designs (S, d) by a search of its own; all searches advance together.
 
     A search with the number 2 i in `rows` (S,) minimizes result i, one with 2 i + 1 maximizes it.
 

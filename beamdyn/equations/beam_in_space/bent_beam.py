@@ -69,7 +69,7 @@ class BeamInSpace(FieldsOnly):
     stiffness, damping : ndarray, shape (coordinates, coordinates)
         Elastic stiffness and damping of the coordinates.
     fibres : ndarray, shape (N,)
-        Mean squared distance i^2 of the fibres from the axis [m2]; 0 neglects the shortening by twist.
+        Mean squared distance i^2 of the fibres from the axis [m2]; 0 neglects the shortening due to twist.
     pretwist : ndarray, shape (N,)
         Pretwist t of the unloaded sections relative to the axes of the strains [1/m].
     kinks : ndarray, shape (cells, 4)
@@ -289,7 +289,10 @@ class BentBeam(FieldsOnly):
         return self._root._within @ _ON_ARC
 
     def turning_rate(self, rates: np.ndarray, bending: np.ndarray) -> np.ndarray:
-        """Compute angular velocities (..., 3, sections) from `rates` and `bending`, rates of curvatures."""
+        """Compute angular velocities (..., 3, sections) of the sections.
+
+        `rates` are the rates of the coordinates, `bending` (..., 3, points) the rates of the curvatures.
+        """
         turning, hinges = self.beam.stations.to_sections(bending), self.beam.hinges
         return turning if hinges is None else turning + self._mean_of_arc @ (rates @ hinges)[..., None]
 
@@ -317,7 +320,7 @@ class BentBeam(FieldsOnly):
 
     @cached_property
     def displacement_rates(self) -> np.ndarray:
-        """Derivatives of the axis displacements along the axis, per coordinate: (coordinates, 3, points)."""
+        """Derivatives along the axis of its displacement per unit of each coordinate: (n, 3, points)."""
         rates = cross(self._turned[..., :-1], self.tangents)
         return rates + self._strained[0] if self.beam.shears else rates
 
@@ -338,7 +341,7 @@ class BentBeam(FieldsOnly):
     # Virtual work of forces at the stations -----------------------------------------------------------
 
     def under(self, forces: StationForces) -> Work:
-        """Compute the virtual work of forces at the stations, and its derivatives by the coordinates."""
+        """Compute the virtual work of forces at the stations, and its change per unit of each coordinate."""
         resultants = self._resultants(forces.force)
         change = self._change_by(*resultants) + self._of_stations(forces.tangent)
         return Work(self._work_of(*resultants), change)
@@ -375,7 +378,7 @@ class BentBeam(FieldsOnly):
         return work + (at_root[..., None, :] @ self._mean_of_arc)[..., 0, :] @ beam.hinges.T
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Differentiate the virtual work of constant n, m and root moment by the coordinates: (n, n).
+        """Compute the derivatives (n, n) of virtual work with respect to coordinates, for constant forces.
 
         The forces and moments are what `_resultants` returns.
         """
@@ -425,7 +428,7 @@ class BentInPlane(BentBeam):
         return self.beam.angles[:, None] * np.array([0.0, 0.0, 1.0])[:, None]
 
     def _change_by(self, n: np.ndarray, m: np.ndarray, at_root: np.ndarray) -> np.ndarray:
-        """Differentiate the virtual work of constant n, m and root moment by the coordinates: (n, n)."""
+        """Compute the derivatives (n, n) of virtual work with respect to coordinates, for constant forces."""
         angles, along = self.beam.angles[:, :-1], (self.tangents[:2] * n[:2]).sum(axis=0)
         return (angles * -along) @ angles.T
 

@@ -32,7 +32,8 @@ def skew(a: np.ndarray) -> np.ndarray:
 _PRODUCT = np.zeros((4, 4, 4))  # multiplication table of quaternions: two factors, then the product
 _PRODUCT[0] = _PRODUCT[:, 0] = np.eye(4)
 _PRODUCT[1:, 1:, 0], _PRODUCT[1:, 1:, 1:] = -np.eye(3), -skew(np.eye(3))
-_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)  # matrices of y -> y (0, a), per entry of a
+# Matrices of the quaternion product y -> y (0, a), one for each component of the vector a.
+_FROM_RIGHT = _PRODUCT[:, 1:].swapaxes(0, 1).reshape(3, 16)
 # Matrix entries of the rotation a -> y (0, a) y*, per product of two components of the quaternion y.
 _TURNING = np.einsum("ajc,b,cbi->abij", _PRODUCT[:, 1:], CONJUGATE, _PRODUCT[..., 1:]).reshape(16, 9)
 

@@ -2,9 +2,9 @@
 
 Coordinates and elastic energy are taken from the displacement fields of the straight beam (bending in two
 directions, shear, stretch, torsion); the trial functions of the fields give the strains here.  The inertial
-forces by the root's motion are exact.  The gyroscopic matrix follows from them: let p be the generalized
-inertial force by a unit angular acceleration, and E the derivative of p with respect to the coordinates; the
-gyroscopic matrix per speed is E - E^T.
+forces due to the root's motion are exact.  The gyroscopic matrix follows from them: let p be the generalized
+inertial force due to a unit angular acceleration, and E the derivative of p with respect to the coordinates;
+the gyroscopic matrix per speed is E - E^T.
 
 With the prebend angle b and the sweep angle a of a curved beam, the local axes are the root's axes rotated by
 b about the third axis, then by -a about the second, so that the unloaded beam points along
@@ -97,12 +97,12 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
         component, order, conditions = known[name]
         of_field, sign = spaces.functions(conditions), _SIGNS[component]
         functions[place, component] = sign * of_field.evaluate(xi, order) / beam.length**order
-        if order == 2:  # functions of a field of bending may rotate the root
+        if order == 2:  # a field of bending, whose functions may rotate the root
             at_root, *turned = of_field.evaluate(np.array([0.0, *xi, 1.0]), 1).T / beam.length
             hinges[place, component - 3] = sign * at_root
             slopes[place] += (sign > 0) * np.array(turned).T
     if beam.matrices is None:
-        # Stretch is added to bending, so that the lines through the centres of tension keep their lengths.
+        # Functions of bending also stretch the axis, so that the line of centres of tension keeps its length.
         offset, across = _tension(beam, xi)
         functions[:, 0] += offset * functions[:, 5] - across * functions[:, 4]
     curvature, kinks = curve_of_axis(beam, quadrature)
@@ -121,7 +121,7 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
 
 
 def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretization) -> RotatingBeam:
-    """Replace a beam's stiffness by that of 6 x 6 section stiffness matrices, without damping."""
+    """Replace a beam's stiffness by that of its 6 x 6 section matrices, and its damping by 0."""
     beam, model, linear = scene.modelled_beam, rotating.beam, rotating.linear
     assert beam.matrices is not None
     xi = model.stations.quadrature.xi
@@ -140,7 +140,7 @@ def _with_law(rotating: RotatingBeam, scene: Scene, discretization: Discretizati
 
 
 def _with_damping(rotating: RotatingBeam, scene: Scene) -> RotatingBeam:
-    """Replace a beam's damping by that of its modes at rest, about the unloaded beam with its curved axis."""
+    """Replace a beam's damping by the damping computed for the unloaded beam with its curved axis."""
     kept = (t for t in rotating.linear.terms if (t.order, t.quantity) != (1, "unity"))
     undamped = replace(rotating, linear=replace(rotating.linear, terms=(*kept,)))
     linear, damping = undamped.linear, damping_terms(undamped.about_straight, scene)
@@ -151,9 +151,10 @@ def _with_damping(rotating: RotatingBeam, scene: Scene) -> RotatingBeam:
 
 
 def _strains_by_forces(model: bent_beam.BeamInSpace, law: np.ndarray, count: int) -> np.ndarray:
-    """Compute strains (6, n, 6, points) by six forces and moments, each varying along x as n polynomials do.
+    """Compute strains (6, n, 6, points) due to six forces and moments that vary along x as n polynomials.
 
-    The polynomials describe components in the axes at the root, which are smooth over the beam; components in
+    The first axis counts forces and moments, the second the polynomials, and the third the strains.  The
+    polynomials describe components in the axes at the root, which are smooth over the beam; components in
     section axes rotate with the axis of the beam.
     """
     xi, unloaded = model.stations.quadrature.xi, model.at(np.zeros(model.size)).rotations[..., :-1]
@@ -325,8 +326,8 @@ class BentState(FieldsOnly):
     def under(self, values: Mapping[Quantity, float]) -> bent_beam.Work:
         """Compute the virtual work of inertial forces for given quantities of root motion (cached).
 
-        If "unity" is given, that fraction of the tip load acts in place of inertial forces.  Signs are as on
-        the left-hand side of the equations of motion.
+        If `values` has a number for "unity", this number times the tip load acts in place of inertial forces.
+        Signs are as on the left-hand side of the equations of motion.
         """
         key = tuple(values.items())
         if key not in self._known:
@@ -342,7 +343,7 @@ class BentState(FieldsOnly):
     def _forces(self, values: Mapping[Quantity, float]) -> StationForces:
         """Compute the forces at the stations for given quantities of root motion: the inertial forces.
 
-        If "unity" is given, return minus that fraction of the tip load instead.
+        If `values` has a number for "unity", return minus this number times the tip load instead.
         """
         if "unity" in values:
             assert self.of.load is not None
@@ -363,7 +364,7 @@ class BentState(FieldsOnly):
         return euler - euler.T
 
     def steady(self) -> SteadyPencil:
-        """Return the equations of small motions at steady speed; `f2` is the load by centrifugal forces."""
+        """Return the equations of small motions at steady speed; `f2` is the centrifugal load."""
         linear, (force, K2) = self.of.linear, self.under(self.of.turning)
         K0 = linear.matrices[0]["unity"] + (self.under({"unity": 1.0}).change if self.of.load else 0.0)
         C = linear.matrices[1].get("unity", np.zeros_like(K0))
@@ -372,7 +373,7 @@ class BentState(FieldsOnly):
     def linearized(self) -> Equations:
         """Return the equations of small motions about this state.
 
-        Minus the elastic force of the state is one of the loads, so that they add up to 0 in equilibrium.
+        One of the loads is minus the elastic force of the state.  In equilibrium the loads add up to 0.
         """
         linear = self.of.linear
         terms = [
@@ -452,7 +453,10 @@ _STRAIGHT = ONE.scaled(0.0)
 
 
 def curve_of_axis(beam: Beam, quadrature: ArcQuadrature) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the axis' curvature (3, N) [1/m] at N Gauss points, and kinks (quaternions) before cells."""
+    """Compute the axis' curvature (3, N) [1/m] at N Gauss points, and its kinks.
+
+    The kinks (cells, 4) are unit quaternions of the axis' rotation at the beginning of each cell.
+    """
     cells, sweep, prebend = quadrature.cells, beam.sweep or _STRAIGHT, beam.prebend or _STRAIGHT
     at_points = Sampler.on_cells(cells)
     a = at_points(sweep)

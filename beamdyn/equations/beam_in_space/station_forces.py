@@ -18,7 +18,7 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.finite_rotations import cross, skew, turn, turn_tensors
 from beamdyn.equations.discretization import ArcQuadrature
 
-ZERO = np.zeros(3)  # force, moment or motion that is absent
+ZERO = np.zeros(3)  # zero vector, for a force, moment or motion that is absent
 
 
 @dataclass(frozen=True)

@@ -167,7 +167,7 @@ class Stretch(Field):
     def assemble(self, scene: Scene, spaces: Spaces) -> FieldEquations:
         """Assemble eqs. (13) of Lee and Yoo (2019), and the coupling in (14).
 
-        The terms are mass M11 (15), axial stiffness KS (16), the softening of the stretch by rotation, and
+        The terms are mass M11 (15), axial stiffness KS (16), the softening of stretch due to rotation, and
         the loads (20), (21).
         """
         s, beam, space = self.name, scene.beam, spaces.functions(STRETCHED)

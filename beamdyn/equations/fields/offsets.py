@@ -14,10 +14,10 @@ its length, so that u' = t.p' - p.p/2 - theta t.K p', and w' = p + p (t.p').  Th
 In the frame of the root a point at r has the acceleration g + r'' + 2 omega B r' + omega' B r - omega^2 P r,
 with B = -[a x] and P = 1 - a a^T, a being the axis of rotation and g the acceleration of the root.  The terms
 are the work of this acceleration, for a mass at c, on these displacements.  Second moments about the axis are
-part of the inertia tensors (`beamdyn.scene.sections`, `TipMass.about`).  Neglected are products of tilt and
-twist with them, and Coriolis and Euler forces of a tilt, which displaces the mass along the beam: these
-change frequencies by about the square of c/L.  In the inertia of tilting, the line of centres of tension is
-straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
+part of the inertia tensors (`beamdyn.scene.sections`, `TipMass.about`).  Two effects are neglected, which
+change frequencies by about the square of c/L: products of tilt, twist and these second moments; and Coriolis
+and Euler forces of a tilt, which displaces the mass along the beam.  In the inertia of tilting, the line of
+centres of tension is straight.  Derivation: docs/conventions.md and tests/invariants/test_offsets.py.
 """
 
 from __future__ import annotations
@@ -98,7 +98,7 @@ EXPLANATIONS: Mapping[str, Explanation] = {
 
 # Index of the first component of c (mass centre), and of t (tension centre), in arrays with both.
 _C, _T = 0, 2
-_TURN = 2  # index of the rotation by torsion, after the two tilts towards e1 and e2
+_TURN = 2  # index of the twist due to torsion, after the two tilts towards e1 and e2
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,15 +151,15 @@ class SectionMotion:
 
 
 def _second_order(rows: SectionMotion, columns: SectionMotion) -> np.ndarray:
-    """Compute the second derivative of the mass centre's displacement by two rotations: shape (3, 4).
+    """Compute d2 u/(dr ds) of the mass centre's displacement u for two rotations r and s: shape (3, 4).
 
-    Rows and columns are as in `SectionMotion.beside`.
+    The axes of the result are those of `SectionMotion.beside`: directions, and components of the offsets.
     """
     i, j, moved = rows.rotation, columns.rotation, np.zeros((3, 4))
     assert i is not None and j is not None, "both are rotations"
     if i == j == _TURN:
         moved[1, _C] = moved[2, _C + 1] = -1.0
-    elif _TURN in (i, j):  # the displacement is -K c along the beam, with the offset c of the mass centre
+    elif _TURN in (i, j):  # the displacement along the beam is -theta p.K c, as in the module's docstring
         tilt = min(i, j)
         moved[0, _C + 1 - tilt] = 2.0 * tilt - 1.0
     else:
@@ -377,7 +377,7 @@ class Offsets:
             yield Term(NAMES[quantity, order], rows, columns, order, matrix, quantity)
 
     def _moved(self) -> Iterator[_CoupledMatrix]:
-        """Yield inertia, Coriolis, Euler and centrifugal matrices of displacements of first order."""
+        """Yield inertia, Coriolis, Euler and centrifugal matrices for first-order motions of mass centres."""
         B, P = self.frame
         kinds: list[tuple[np.ndarray, float, list[tuple[Quantity, int, float]]]] = [
             (np.eye(3), 1.0, [("unity", 2, 1.0)]),
@@ -410,7 +410,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field, columns.field, quantity, 0, found, mirrored)
 
     def _drawn_in(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the axial force, as motion shortens the line of tension centres."""
+        """Yield matrices for the work of the axial force when motion shortens the line of tension centres."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for trial in self.trials if vector[0] else ():
@@ -422,7 +422,7 @@ class Offsets:
                     yield _CoupledMatrix(self.turn.field, trial.field.name, quantity, 0, factor * matrix)
 
     def _sheared(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of transverse forces, as tension centres' offsets change the slope."""
+        """Yield matrices for the work of transverse forces on slopes due to offsets of tension centres."""
         for quantity, vector, power in self._parametric:
             pulled = _pulled(self.scene.modelled_beam)[power]
             for rows, columns in product(self.tilting, repeat=2):
@@ -432,7 +432,7 @@ class Offsets:
                     yield _CoupledMatrix(rows.field.name, columns.field.name, quantity, 0, force * matrix)
 
     def _turned(self) -> Iterator[_CoupledMatrix]:
-        """Yield matrices for the work of the twisting moment, as bending along e1 and e2 twists sections."""
+        """Yield matrices for the work of the twisting moment on the twist due to bending along e1 and e2."""
         for pair in (Pair.of(*each) for each in combinations(self.tilting, 2)):
             for quantity, vector, power in self._parametric:
                 if (moment := self._outboard(vector @ self.turn.beside, power)) is not None:
@@ -440,7 +440,7 @@ class Offsets:
                     yield _CoupledMatrix(*names, quantity, 0, -pair.twist_by_bending(moment) / 2)
 
     def _tightened(self) -> Iterator[_CoupledMatrix]:
-        """Yield the stiffness matrices due to the axial force by the acceleration of masses beside the axis.
+        """Yield the stiffness matrices of the axial force that accelerated masses off the axis cause.
 
         Like any axial force, this force does work on the slope of the beam.
         """
@@ -460,7 +460,7 @@ class Offsets:
     # Loads --------------------------------------------------------------------------------------------
 
     def loads(self) -> Iterator[Load]:
-        """Yield the loads by accelerations of the axis, and of mass centres relative to the axis."""
+        """Yield the loads due to accelerations of the axis, and of mass centres relative to the axis."""
         sums: dict[tuple[str, Quantity], np.ndarray] = {}
         for motion in self.motions:
             for quantity, coefficients, power in self._accelerated(motion):
@@ -494,5 +494,5 @@ class Offsets:
             yield quantity, motion.on_axis @ matrix, 0
 
     def _load(self, weight: Profile, conditions: RootConditions, order: int) -> np.ndarray:
-        """Integrate a weight times x derivatives of n functions with given root conditions: shape (n,)."""
+        """Integrate a weight times the `order`-th x derivative of n functions with these conditions: (n,)."""
         return self.spaces.functions(conditions).load(weight, order) * self.scene.beam.length ** (1 - order)

@@ -21,7 +21,8 @@ from beamdyn.scene.profile import ONE, Profile, combine
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
-_ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)  # orders of the derivatives along and across
+# Orders of the derivatives of the deflection along and across the strip.
+_ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)
 _ZERO = 1e-12  # averages over the width below this fraction of the largest count as 0: they are 0 by symmetry
 
 
@@ -87,7 +88,7 @@ class WidthFunctions:
         }
         if min(numbers) % 2 and not _is_uniform(section.width):
             self.parts = _parts_over_fixed_width(section.width, tuple(numbers), eta)
-        elif section.width.degree:  # the derivative d/dx is taken at constant y
+        elif section.width.degree:  # the width varies: d/dx at constant y is not d/dx at constant eta
             slope, change = _relative_slopes(section.width, length)
             stretched, turned = eta * dp, dp + eta * ddp
             self.parts["w_x"].append(Derivative(slope.scaled(-1.0), 0, stretched))
@@ -129,7 +130,7 @@ def _parts_over_fixed_width(
         powers.append(powers[-1] * r)
 
     def of(along: int, across: int) -> list[Derivative]:
-        """List the summands of the deflection's derivative of given orders by x (along) and y (across)."""
+        """List the summands of the deflection's derivative of order `along` in x and order `across` in y."""
         return [
             Derivative(
                 powers[m - across].scaled(math.perm(m, across) * dy**across),

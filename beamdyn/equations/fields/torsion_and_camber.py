@@ -37,13 +37,12 @@ the unit vector a adds
     omega^2/2 int int [T w_x^2 + N_y w_y^2 - (1 - a1^2) rho t w^2] dy dx,
     N_y = rho t (1 - a2^2) (b^2/4 - y^2)/2,
 
-where omega^2 T is the tension by rotation per width, and a1, a2 are the components of a in the directions of
-bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).  N_y
-is a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero, rotation
-also twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of the
-thickness.
-In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly where the width has
-a kink or jumps; of the even ones d/dx at constant y is d/dx - eta (b'/b) d/d eta.
+where omega^2 T is the tension per width due to rotation, and a1, a2 are the components of a in the directions
+of bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).
+N_y is a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero,
+rotation also twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of
+the thickness.  In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly
+where the width has a kink or jumps; for even functions, d/dx at constant y is d/dx - eta (b'/b) d/d eta.
 
 Bodies at the tip and along the beam, springs and accelerations of the root act on the mean deflection over
 the width; a tip body also rotates with the mean twist of the tip.  Derivation: docs/conventions.md and
@@ -219,7 +218,7 @@ _SOME_RATIO = 0.3  # Poisson's ratio in the list of all terms, if none is given
 _IS_TWISTED = Condition(lambda s: s.scene.modelled_beam.twist is not None, "the beam is not twisted")
 _IS_OBLIQUE = Condition(
     lambda s: _IS_TWISTED.is_met(s) or min(map(abs, aligned_cos_sin(s.scene.mount.bending_angle))) != 0,
-    "the strip stands along or across the plane of rotation",
+    "the strip is parallel or perpendicular to the plane of rotation",
 )
 
 
@@ -230,7 +229,10 @@ class SectionField(Field):
     first: ClassVar[int]
 
     def complete(self, scene: Scene) -> Scene:
-        """Return the scene with this field; a rectangular section gets Poisson's ratio, and no twist."""
+        """Return the scene with this field; unchanged if the section is not rectangular.
+
+        A section without Poisson's ratio gets one, and the twist is removed.
+        """
         section = scene.beam.section
         if section is None:
             return scene
@@ -287,7 +289,7 @@ class SectionField(Field):
         return ONE
 
     def _coupling(self, strip: Strip, own: WidthFunctions) -> Iterator[Term]:
-        """Yield the coupling terms with bending; none by default, as for deflections that are odd across."""
+        """Yield the coupling terms with bending; none by default: odd deflections across are not coupled."""
         return iter(())
 
     def _of_body(self, strip: Strip, own: WidthFunctions, along: Space) -> Iterator[Term]:
@@ -340,7 +342,7 @@ class Torsion(SectionField):
             "-ω² c s Qk", "rotation turns the strip into its plane", (why.TURNS, _IS_OBLIQUE)
         ),
         "untwisting by tension": Explanation(
-            "ω² NB r² β' θ'", "tension pulls straight the fibres of a twisted beam", (why.TURNS, _IS_TWISTED)
+            "ω² NB r² β' θ'", "tension straightens the fibres of a twisted beam", (why.TURNS, _IS_TWISTED)
         ),
         **EXPLANATIONS,
     }

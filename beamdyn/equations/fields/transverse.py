@@ -276,13 +276,13 @@ def plane_components(scene: Scene) -> tuple[tuple[float, float], tuple[float, fl
 
 
 def axis_in_section(scene: Scene) -> tuple[float, float]:
-    """Compute the rotation axis' components in the direction of bending at the root, and perpendicular."""
+    """Compute the rotation axis' components along the direction of bending at the root and across it."""
     (c, s), (cosine, _) = aligned_cos_sin(scene.mount.bending_angle), exact_cos_sin(scene.mount.precone)
     return cosine * s, cosine * c
 
 
 def _terms(pair: Pair) -> Iterator[Term]:
-    """Yield mass and stiffness terms: elastic, of springs, by tension and by rotation."""
+    """Yield mass and stiffness terms: elastic, of springs, and due to tension and rotation."""
     rows, columns, (i, j) = pair.rows, pair.columns, pair.directions
     scene, beam, tip, sections = rows.scene, rows.beam, rows.tip, section_tensor(rows.beam, "rotary_inertia")
     cosine, sine = exact_cos_sin(scene.mount.precone)

@@ -132,7 +132,7 @@ def _turned(tip: TipMass | None, plane: str) -> TipMass | None:
 
 
 STEEP = 3.0  # smallest factor between neighbouring stations that is reported as a steep step
-_SUM_ERROR = 1e-3  # error of the sum of a mode shape's coefficients that ElastoDyn accepts
+_SUM_ERROR = 1e-3  # largest error of the sum of a mode shape's coefficients that ElastoDyn accepts
 _SHAPE_ERROR = 0.05  # difference from the computed shape, at tip deflection 1, that causes a warning
 _STEPPED = ("mass_per_length", "bending_stiffness", "second_bending_stiffness")
 _STEPPED_NAMES = {"mass_per_length": "mass", "bending_stiffness": "flap stiffness"}

@@ -100,7 +100,7 @@ def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> 
     for k in range(1, count + 1):
         number = int(_numbers(text, line + k, 2, "the number of a member and of its key points")[1])
         if number < 3 or start + number > points:
-            said = f"expected 3 key points or more, at most the {points - start} that are left"
+            said = f"expected at least 3 key points in this member, and at most the {points - start} left"
             raise text.refusal(line + k, f"{said}, found {number}")
         members.append(slice(start, start + number))
         start += number - 1
@@ -252,9 +252,7 @@ def _check_matrices(
         (least_eigenvalues(ours) <= LEAST, "a positive definite matrix"),
     ]
     if name == "mass":
-        wanted = (
-            "mass m on the diagonal, m times its centre beside it, and inertia about z equal to Ixx + Iyy"
-        )
+        wanted = "mass m on the diagonal, m times the centre's offset off it, inertia about z = Ixx + Iyy"
         is_bad = (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS)
         checks += [(is_bad, wanted)]
     for bad, wanted in checks:

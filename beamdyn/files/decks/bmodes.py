@@ -45,7 +45,7 @@ COLUMNS = (
     DeckColumn("tc_offst", "m", required=True),
 )
 _OFFSETS = ("cg_offst", "sc_offst", "tc_offst")
-_NO_TORSION = "they act in torsion, which needs tor_stff, flp_iner and edge_iner above 0"
+_NO_TORSION = "offsets act in torsion, which needs tor_stff, flp_iner and edge_iner above 0"
 _REASONS: dict[str, str] = dict.fromkeys(_OFFSETS, _NO_TORSION)
 _USED = ("sec_loc", "str_tw", "tw_iner", "mass_den", "flp_iner", "edge_iner", "flp_stff", "edge_stff")
 _USED = (*_USED, "tor_stff", "axial_stff", "span_loc")

@@ -11,7 +11,7 @@ from beamdyn.common.edge.inputs import Quantity
 from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.scenes import RADIUS, read_station_file
 
-_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # headings of other programs for twist of opposite sign
+_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # headings of other programs, whose twist has the opposite sign
 _MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}
 _NEEDED = ("mass_per_length", "bending_stiffness")
 _SECTION = ("width", "thickness")
@@ -29,7 +29,7 @@ def needs_length(text: DataText) -> bool:
 
 
 def needs_hub_radius(text: DataText) -> bool:
-    """Return whether positions are not measured from the axis, so that the hub radius is needed."""
+    """Return whether positions are not measured from the axis of rotation: the hub radius is then needed."""
     return RADIUS not in read_station_file(text, _MORE).named()
 
 
@@ -93,9 +93,7 @@ def _fractions(x: np.ndarray, length: float) -> np.ndarray:
 def _properties(table: CsvTable) -> dict[str, np.ndarray]:
     named, text = table.named(), table.text
     if given := [named[name].head for name in _SECTION if name in named]:
-        said = (
-            f"expected a blade by its stiffness, found {given[0]}; name the file in a scene as beam.stations"
-        )
+        said = f"expected columns of stiffness, found {given[0]}; a scene may name this file as beam.stations"
         raise text.refusal(table.head_line, said)
     if missing := [name for name in _NEEDED if name not in named]:
         words = {"mass_per_length": "mass [kg/m]", "bending_stiffness": "EI flap [N m2]"}
@@ -115,7 +113,7 @@ def _with_twist(table: CsvTable, columns: dict[str, np.ndarray]) -> dict[str, np
         raise table.text.refusal(table.head_line, f"expected one twist, found {' and '.join(given)}")
     for name in given:
         if "second_bending_stiffness" not in columns:
-            said = f"expected a column EI edge [N m2] with {name}, which turns two directions of bending"
+            said = f"expected a column EI edge [N m2], too, as {name} turns both directions of bending"
             raise table.text.refusal(table.head_line, said)
         degrees = [round(senses[name] * math.degrees(value), 12) for value in columns.pop(name)]
         columns["twist"] = np.array(degrees)

@@ -208,7 +208,7 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
             return read(text, *(needed[name] for name in wanted))
     if csv_table.is_csv(text):
         length, hub_radius = csv_table.needs_length(text), csv_table.needs_hub_radius(text)
-        remedy = "a column r [m], measured from the axis of rotation, gives both"
+        remedy = "a column r [m], measured from the axis of rotation, gives length and hub radius"
         needed = _needed(text, given, remedy, length, hub_radius)
         return csv_table.read_csv_blade(text, **needed)
     raise ConfigError(str(text.path), [f"it is none of the files that are read: expected {_KINDS}"])

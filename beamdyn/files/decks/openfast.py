@@ -10,7 +10,7 @@ from beamdyn.files.decks.blade import Blade, ignore
 from beamdyn.files.decks.elastodyn import named_file
 
 _ELASTODYN, _BEAMDYN = 1, 2  # values of the setting CompElast; 3 is a simplified ElastoDyn
-_NO_TIP_MASS = "OpenFAST leaves it out where BeamDyn computes the blades; to include it, give tip in [beam]"
+_NO_TIP_MASS = "OpenFAST ignores this mass if BeamDyn computes the blades; to include it, give tip in [beam]"
 
 
 def read_openfast_file(text: DataText) -> Blade:

@@ -59,7 +59,7 @@ def _tables_of_stations(blade: Blade) -> dict[str, Any]:
 
 
 def _matrix_rows(matrices: BladeMatrices) -> list[list[Any]]:
-    """Return headings and rows for the matrix entries that are not 0 at all stations."""
+    """Return headings and rows for the matrix entries that are nonzero at any station."""
     both = {"K": matrices.stiffness, "M": matrices.mass}
     entries = {
         f"{entry_name(letter, i, j)}": values[:, i, j] for letter, values in both.items() for i, j in UPPER
@@ -71,7 +71,7 @@ def _matrix_rows(matrices: BladeMatrices) -> list[list[Any]]:
 
 
 def _names(blade: Blade, among: Iterable[str]) -> list[str]:
-    """Select the properties that the blade has; offsets and twist only if not zero at all stations."""
+    """Select the properties that the blade has; offsets and twist only if nonzero at any station."""
     given = (name for name in among if name in blade.columns)
     return [name for name in given if name not in OF_ANY_SIGN or blade.columns[name].any()]
 
