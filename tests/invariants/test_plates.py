@@ -342,6 +342,14 @@ def test_a_fast_outward_strip_keeps_its_section():
     assert plain.left_out["camber of sections"][0] > 0
 
 
+def test_many_modes_of_a_strip_are_resolved():
+    """Bases grow along the strip until they suffice, as at most 16 functions stand across."""
+    scene = bd.Scene(strip((0.5, 0.03, 0.012), 0.3), physics=bd.Physics(camber=True))
+    many, few = (bd.natural_modes(scene, modes=modes) for modes in (15, 6))
+    assert many.error.max() < 1e-3
+    assert (np.abs(many.frequency[:6] / few.frequency - 1) <= many.error[:6] + few.error).all()
+
+
 def test_modes_that_are_not_listed_are_said_of_loaded_results_too(tmp_path):
     modes = bd.natural_modes(bd.Scene(strip((0.05, 0.01, 0.0002), 0.3)))
     said = modes.left_out_effects.sentence()
