@@ -387,8 +387,9 @@ class TransientRequest(TransientProblem):
             yield from warn_of_suppressed_camber(scene, bending, lambda k: f"at {t[k]:.4g} s")
         else:
             yield from warn_of_deflection(np.array([largest]), scene.beam.length)
-        road = self.motion.at(np.linspace(0, self.t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]
-        yield from warn_of_road(np.array([np.abs(road).max()]))
+        if self.motion.road_multiple is not None:
+            road = self.motion.at(np.linspace(0, self.t_end, SPEED_SAMPLES)).carrier_acceleration[:, 1]
+            yield from warn_of_road(np.array([np.abs(road).max()]))
         error = solution.error / largest if largest else 0.0
         said = f"{error:.2g} of the largest deflection, and smaller steps would only add rounding errors; "
         yield from _warn_of_missed(

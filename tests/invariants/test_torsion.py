@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 from scipy.optimize import brentq
 
 import beamdyn as bd
@@ -175,6 +176,17 @@ def test_torsion_of_a_width_with_a_kink_is_the_limit_of_rounded_ones(tip_width: 
     assert fine < 6e-4
     assert coarse < 30 * fine + 1e-9
     assert coarse > 5 * fine
+
+
+@pytest.mark.parametrize("tip_width", [0.09, 0.006])
+def test_many_functions_of_a_tapered_strip(tip_width: float) -> None:
+    """Functions of y itself would grow like powers of the width: rounding would hide the narrow part."""
+    width = bd.Polynomial([0.03, tip_width - 0.03])
+    strip = bd.Beam.rectangular(0.5, width, 0.0025, 200e9, 7850.0, poissons_ratio=0.3)
+    scene = bd.Scene(strip, physics=bd.Physics(torsion=True))
+    pencils = (assemble_equations(scene, bd.Ritz(functions)).steady() for functions in (9, 18))
+    few, many = (eigh(p.M, p.K0, eigvals_only=True)[-4:] for p in pencils)  # K0 is positive definite
+    np.testing.assert_allclose(many, few, rtol=1e-3)  # of nine functions
 
 
 @pytest.mark.slow

@@ -310,6 +310,13 @@ def test_a_beam_that_its_weight_buckles_is_refused() -> None:
         bd.simulate(scene, 300.0, modes=2)
 
 
+def test_a_wheel_leaves_the_road_only_where_there_is_one() -> None:
+    shaken = bd.ShakenCarrier(frequency=20.0, along_n2=30.0, rotation=50.0)
+    rough = bd.RollingWheel(0.3, 50.0, bd.RoadWave(0.3, velocity_amplitude=0.1))
+    said = (bd.simulate(replace(ROLLING, motion=m), 0.1, modes=1).warnings for m in (shaken, rough))
+    assert ["leaves the road" in " ".join(each) for each in said] == [False, True]
+
+
 def test_time_error_sees_what_the_series_for_a_modulated_beam_leaves_out() -> None:
     """Against DOP853, which shares no code: also where interpolation between few steps is most of it."""
     beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -86,8 +86,8 @@ class WidthFunctions:
             "w_xx": [Derivative(ONE, 2, p)],
             "w_xy": [Derivative(half, 1, dp)],
         }
-        if min(numbers) % 2 and not _is_uniform(section.width):
-            self.parts = _parts_over_fixed_width(section.width, tuple(numbers), eta)
+        if (ratio := over_fixed(section.width, min(numbers))) is not ONE:
+            self.parts = _parts_over_fixed_width(section.width, ratio, tuple(numbers), eta)
         elif section.width.degree:  # the width varies: d/dx at constant y is not d/dx at constant eta
             slope, change = _relative_slopes(section.width, length)
             stretched, turned = eta * dp, dp + eta * ddp
@@ -108,26 +108,25 @@ def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, lis
     return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
 
 
-def _is_uniform(width: Profile) -> bool:
-    """Return whether the width is the same along the whole beam."""
-    return not width.degree and len(width.breakpoints) == 2
+def over_fixed(width: Profile, number: int) -> Profile:
+    """Divide the width by that by which y is divided in functions across of a number k, odd or even.
 
-
-def over_tip(width: Profile) -> Profile:
-    """Divide the width by its value at the tip."""
-    return width.scaled(1 / float(width.end_values()[1][-1]))
+    That is the local width, but for odd functions the width at the tip where the width has kinks or jumps.
+    """
+    is_fixed = number % 2 and len(width.breakpoints) > 2
+    return width.scaled(1 / float(width.end_values()[1][-1])) if is_fixed else ONE
 
 
 def _parts_over_fixed_width(
-    width: Profile, numbers: tuple[int, ...], eta: np.ndarray
+    width: Profile, ratio: Profile, numbers: tuple[int, ...], eta: np.ndarray
 ) -> dict[str, list[Derivative]]:
     """Split derivatives of p_k(2 y/tip width) u_k(x) into powers of 2 y/width and of width/tip width."""
-    r, dy = over_tip(width), 2 / float(width.end_values()[1][-1])
+    dy = 2 / float(width.end_values()[1][-1])
     series = (np.sqrt(2 * k + 1) * legendre.leg2poly(np.eye(k + 1)[k]) for k in numbers)
     coefficients = np.array([np.pad(c, (0, max(numbers) + 1 - len(c))) for c in series])
     powers = [ONE]
     while len(powers) <= max(numbers):
-        powers.append(powers[-1] * r)
+        powers.append(powers[-1] * ratio)
 
     def of(along: int, across: int) -> list[Derivative]:
         """List the summands of the deflection's derivative of order `along` in x and order `across` in y."""

@@ -41,8 +41,11 @@ where omega^2 T is the tension per width due to rotation, and a1, a2 are the com
 of bending and of the width (with precone, its cosine times the sine and the cosine of the bending angle).
 N_y is a tension across the width, which stiffens torsion (propeller moment).  Where a1 a2 is not zero,
 rotation also twists the strip, by the load -omega^2 a1 a2 rho t y per area, reduced by the rotary inertia of
-the thickness.  In a tapered strip the functions of torsion are p_k(2 y/b(L)), which lets it bend smoothly
-where the width has a kink or jumps; for even functions, d/dx at constant y is d/dx - eta (b'/b) d/d eta.
+the thickness.
+
+In a tapered strip d/dx at constant y is d/dx - eta (b'/b) d/d eta.  Where the width has kinks or jumps, the
+functions of torsion are p_k(2 y/b(L)), with which the strip bends smoothly there.  Where it has none, these
+are not used: they grow with the k-th power of the width, and would lose digits.
 
 Bodies at the tip and along the beam, springs and accelerations of the root act on the mean deflection over
 the width; a tip body also rotates with the mean twist of the tip.  Derivation: docs/conventions.md and
@@ -65,7 +68,7 @@ from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending_shear_stretch import STRETCHED, Bending, Stretch
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.fields.offsets import EXPLANATIONS, Offsets, SectionMotion
-from beamdyn.equations.fields.strip import StackedSpace, Strip, WidthFunctions, over_tip
+from beamdyn.equations.fields.strip import StackedSpace, Strip, WidthFunctions, over_fixed
 from beamdyn.equations.fields.transverse import TransverseField, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
@@ -248,8 +251,7 @@ class SectionField(Field):
         """Assemble the terms of the plate's energy, with the coupling to bending."""
         strip = Strip(scene, spaces)
         numbers = tuple(self.numbers(spaces.across))
-        fewer, is_odd = len(self.numbers(spaces.fewer_across)), self.first % 2
-        stretch = over_tip(strip.section.width) if is_odd else ONE
+        fewer, stretch = len(self.numbers(spaces.fewer_across)), over_fixed(strip.section.width, self.first)
         space = StackedSpace(spaces.functions(_HELD), numbers, fewer, stretch)
         if not numbers:
             return FieldEquations(space, (), ())

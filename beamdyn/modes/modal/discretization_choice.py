@@ -262,7 +262,7 @@ def refine_model(model: Model) -> Model | None:
     finer = model.discretization.finer()
     if isinstance(finer, Ritz):  # finite elements have a separate limit
         segments = _count_segments(model.scene) if finer.on_each_segment else 1
-        across = 1 + finer.functions if model.scene.models_width else 1
+        across = 1 + finer.spaces(model.scene.modelled_beam).across if model.scene.models_width else 1
         finer = finer if finer.functions * segments * across <= _MOST_IN_ALL * min(across, 2) else None
     if finer is None:
         return None
