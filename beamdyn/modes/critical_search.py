@@ -134,4 +134,4 @@ def _margin(model: Model) -> float:
     """Choose the ratio of the error to the difference between two models; 1 for meshes, which are halved."""
     if model.discretization.order is not None:
         return 1.0
-    return (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor
+    return (SLOW_BASES if model.lacks_two else BASES_OF_FIELDS).factor

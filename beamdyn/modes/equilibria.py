@@ -190,7 +190,7 @@ def equilibrium(
     q = solver.equilibria(speeds)[0]
     tip, of_coarse = (each.elastica.beam.at(each.equilibria(speeds)[0]).tip for each in (solver, coarse))
     growth = float(np.real(solution.eigen.eigenvalue).max())
-    error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_one else 1.0)
+    error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_two else 1.0)
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
