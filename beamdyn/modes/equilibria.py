@@ -229,7 +229,7 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
     assert isinstance(scene, Scene)
     branch = scene.physics.branch if branch is None else branch
     one_of("branch", branch, ("straight", "bent"))
-    return replace(scene, physics=scene.physics.with_large_deflection(branch=branch))
+    return scene.with_large_deflection(branch=branch)
 
 
 def _directions(mount: Mount) -> np.ndarray:

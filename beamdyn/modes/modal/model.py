@@ -115,7 +115,8 @@ class Model(FieldsOnly):
     def exceeds_coarser(self) -> bool:
         """Whether each field has functions beyond the coarser model's, as the error estimate needs.
 
-        Fields of a strip need them both along it and across.  If the coarser model has different functions, it suffices that it has fewer in total.
+        Fields of a strip need them both along it and across.  If the coarser model has different functions,
+        it suffices that it has fewer in total.
         """
         coarse = self.equations.coarse
         if coarse is None:
