@@ -14,7 +14,6 @@ from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION
-from beamdyn.equations.fewer_across import FewerAcross
 from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.discretization_choice import (
@@ -305,11 +304,10 @@ def _with_error(
         value
     ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
     error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
-    if model.scene.models_width:  # meshes, and the largest bases, differ along the beam alone
-        narrow = FewerAcross(model.discretization)
-        fewer = evaluate(ModelAtSpeed(Model(model.model.scene, narrow), model.speed, model.modes))
-        known = narrow.has_fewer_of_both(model.scene.modelled_beam)
-        error = error + (BASES_OF_PLATES.factor * np.abs(fewer - value) if known else np.inf)
+    across = model.model.distance_across(
+        lambda narrow: evaluate(ModelAtSpeed(narrow, model.speed, model.modes)), value
+    )
+    error = error + BASES_OF_PLATES.factor * across
     truncation, compared = np.zeros(()), [str(coarse.discretization)]
     if model.modes is not None and larger is None:
         truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]

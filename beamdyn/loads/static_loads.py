@@ -153,7 +153,8 @@ def static_loads(
     def solved(model: Model) -> _Solved:
         (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
         rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
-        distance = np.abs(found - coarse)  # at some stations the difference may be small by chance
+        across = model.distance_across(lambda narrow: _solve(narrow, asked, speeds, theta)[0], found)
+        distance = np.abs(found - coarse) + across  # at some stations either may be small by chance
         distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
         return _Solved(model, found, BASES_OF_STATIC_LOADS.factor * distance + rounding, tip)
 

@@ -9,7 +9,7 @@ from itertools import chain
 
 import numpy as np
 
-from beamdyn.accuracy.refinement import BASES_OF_FIELDS, SLOW_BASES, refine
+from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, SLOW_BASES, refine
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
 from beamdyn.modes.modal.equilibrium import find_loss_of_stability
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
@@ -97,6 +97,10 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         half = coarse.coarser.solver
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
+        across = model.distance_across(
+            lambda narrow: np.array(narrow.solver.softening), np.array(fine_softening)
+        )
+        left += BASES_OF_PLATES.factor * float(across)
     error = left / (2 * softening) + noise
     # A comparison of models with the same functions does not show an error.
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size
