@@ -24,6 +24,7 @@ from beamdyn.modes.modal.discretization_choice import (
     most_modes,
 )
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physics
 from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
 from beamdyn.scene.validity import check_speeds
@@ -304,8 +305,8 @@ def _with_error(
         value
     ).max() + LINEAR_MESHES.factor * model.discretization.rounding * np.abs(value)
     error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
-    across = model.model.distance_across(
-        lambda narrow: evaluate(ModelAtSpeed(narrow, model.speed, model.modes)), value
+    across = distance_across(
+        model.model, lambda narrow: evaluate(ModelAtSpeed(narrow, model.speed, model.modes)), value
     )
     error = error + BASES_OF_PLATES.factor * across
     truncation, compared = np.zeros(()), [str(coarse.discretization)]

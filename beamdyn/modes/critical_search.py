@@ -14,6 +14,7 @@ from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list
 from beamdyn.modes.modal.equilibrium import find_loss_of_stability
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.scene.scene import Scene
 
 # Number of modes for which the first basis is chosen, so that a basis of half its size usually suffices too.
@@ -97,8 +98,8 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         half = coarse.coarser.solver
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
-        across = model.distance_across(
-            lambda narrow: np.array(narrow.solver.softening), np.array(fine_softening)
+        across = distance_across(
+            model, lambda narrow: np.array(narrow.solver.softening), np.array(fine_softening)
         )
         left += BASES_OF_PLATES.factor * float(across)
     error = left / (2 * softening) + noise

@@ -9,7 +9,7 @@ The kind of a mode (bending, torsion, camber) is the one with the largest kineti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -26,7 +26,6 @@ from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.circuit import coupling_of
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.equations.fewer_across import FewerAcross
 from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
@@ -164,20 +163,6 @@ class Model(FieldsOnly):
     def coarser(self) -> Model:
         """Coarser model, whose results serve to estimate the error of this model."""
         return Model(self.scene, self.discretization.coarser())
-
-    def distance_across(
-        self, evaluate: Callable[[Model], np.ndarray], value: np.ndarray
-    ) -> np.ndarray | float:
-        """Compute how far a value is from that of a strip with fewer functions across; 0 for other beams.
-
-        Meshes, and the largest bases, differ from coarser ones along the beam alone.
-        """
-        if not self.scene.models_width:
-            return 0.0
-        narrow = FewerAcross(self.discretization)
-        if not narrow.has_fewer_of_both(self.scene.modelled_beam):
-            return np.inf
-        return np.abs(evaluate(Model(self.scene, narrow)) - value)
 
     @property
     def lacks_two(self) -> bool:
