@@ -116,6 +116,17 @@ def test_camber_has_more_functions_across_than_in_the_coarser_model(functions: i
 
 
 @pytest.mark.parametrize("tolerance", [0.1, 0.01])
+def test_torsion_of_a_strip_at_a_loose_tolerance(tolerance: float) -> None:
+    """The second function of torsion across changes its mode by less than the third."""
+    strip = bd.Beam.rectangular(0.3, 0.1, 0.002, 70e9, 2700.0, poissons_ratio=0.3)
+    physics = bd.Physics(rotary_inertia=True, torsion=True)
+    scene = bd.Scene(strip, bd.Mount(0.1, 0.0, math.pi / 2), physics=physics)
+    found = bd.natural_modes(scene, 20.0, 2, tolerance=tolerance)
+    best = bd.natural_modes(scene, 20.0, 2, bd.Ritz(14))
+    assert (np.abs(found.frequency / best.frequency - 1) <= found.error).all()
+
+
+@pytest.mark.parametrize("tolerance", [0.1, 0.01])
 def test_setting_angles_of_a_cambered_strip(tolerance: float) -> None:
     """They have bases with more functions across than the two by which their error is stated."""
     strip = bd.Beam.rectangular(0.3, 0.12, 0.004, 70e9, 2700.0, poissons_ratio=0.33)
