@@ -50,8 +50,8 @@ _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose
 _MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"
 # Smallest number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode; and
-# of plates: with fewer, it has as many of camber across the width, or one of torsion, where the second changes
-# less than the third.
+# of plates: with fewer, it has as many of camber across the width, or one of torsion, where the second
+# changes less than the third.
 _FEWEST_FUNCTIONS, _FEWEST_OF_PLATES = 9, 7
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
