@@ -343,14 +343,14 @@ def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Eq
     circuit, kept = equations.circuit, reduced.circuit
     assert circuit is not None and kept is not None
     stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]
-    by_modes = np.linalg.solve(stiffness[1], kept.coupling)
-    bent = np.linalg.solve(stiffness[0], circuit.coupling)
-    bent = {
-        name: bent[equations.blocks[name]] - shape.matrix @ by_modes[reduced.blocks[shape.block]]
-        for name, shape in reduced.shapes.items()
-    }
-    more = sum(circuit.coupling[equations.blocks[name]] @ g for name, g in bent.items())
-    capacitance = circuit.capacitance + float(more)
+    of_modes, by_modes = np.zeros(equations.size), np.linalg.solve(stiffness[1], kept.coupling)
+    for name, shape in reduced.shapes.items():
+        of_modes[equations.blocks[name]] = shape.matrix @ by_modes[reduced.blocks[shape.block]]
+    # Near the critical speed the deflection of all modes is large; the load on those left out is not.
+    load = circuit.coupling - stiffness[0] @ of_modes
+    residual = np.linalg.solve(stiffness[0], load)
+    bent = {name: residual[equations.blocks[name]] for name in reduced.shapes}
+    capacitance = circuit.capacitance + float(load @ residual)
     return replace(reduced, circuit=replace(kept, capacitance=capacitance, bent=bent))
 
 
