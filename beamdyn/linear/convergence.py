@@ -14,7 +14,6 @@ from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.statements import Speeds
 from beamdyn.common.words import Named, Words
 from beamdyn.equations.effects import LARGE_DEFLECTION
-from beamdyn.equations.fewer_across import FewerAcross
 from beamdyn.linear.inputs_outputs import Excitation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.modes.modal.discretization_choice import (
@@ -25,6 +24,7 @@ from beamdyn.modes.modal.discretization_choice import (
     most_modes,
 )
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physics
 from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
 from beamdyn.scene.validity import check_speeds
@@ -316,11 +316,10 @@ def _with_error(
     error = LINEAR_MESHES.factor * np.abs(evaluate(coarse) - value) + rounding
     # The coarser mesh or basis may have as many functions across the width, so that these need a comparison
     # too.
-    if model.scene.models_width:
-        narrow = FewerAcross(model.discretization)
-        fewer = evaluate(ModelAtSpeed(Model(model.model.scene, narrow), model.speed, model.modes))
-        known = narrow.has_fewer_of_both(model.scene.modelled_beam)
-        error = error + (BASES_OF_PLATES.factor * np.abs(fewer - value) if known else np.inf)
+    across = distance_across(
+        model.model, lambda narrow: evaluate(ModelAtSpeed(narrow, model.speed, model.modes)), value
+    )
+    error = error + BASES_OF_PLATES.factor * across
     truncation, compared = np.zeros(()), [str(coarse.discretization)]
     if model.modes is not None and larger is None:
         truncation, compared = np.asarray(np.inf), [*compared, "no larger model"]

@@ -143,7 +143,7 @@ def check_stable(model: ModelAtSpeed) -> None:
     free, speed = model.free_motion, model.speed
     inverse, mechanical = free.inverse_poles, model.inverse_mechanical_poles
     elastic = np.abs(mechanical[min(2 * _PLANES, len(mechanical) - 1)])
-    if elastic < _STILL * np.abs(mechanical[0]):
+    if elastic < _STILL * np.abs(mechanical[0]) or np.isinf(inverse).any():
         bound, remedy = (
             "the beam turns freely about its root, or is at its critical speed",
             "change the speed, or give root_stiffness",

@@ -245,7 +245,7 @@ def _across_deflected_axis(
             continue
         of_quantity = position.get(quantity, np.zeros((*rows.shape, equations.size))).copy()
         for direction in range(equations.planes):
-            slope = equations.deflection(stations.xi, 1, direction).T / length
+            slope = equations.deflection(stations.beside, 1, direction).T / length
             of_quantity[:, 1 + direction] -= tension[:, None] * slope
         position[quantity] = of_quantity
     return replace(rows, position=position)

@@ -139,7 +139,7 @@ def backbone(
     refuse_tip_load(scene)
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
-    scene = replace(scene.undamped, physics=scene.physics.with_large_deflection())
+    scene = scene.undamped.with_large_deflection()
     solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]
     if not (s.imag > 0 and s.real <= 0):

@@ -9,11 +9,12 @@ from itertools import chain
 
 import numpy as np
 
-from beamdyn.accuracy.refinement import BASES_OF_FIELDS, SLOW_BASES, refine
+from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, SLOW_BASES, refine
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
 from beamdyn.modes.modal.equilibrium import find_loss_of_stability
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.scene.scene import Scene
 
 # Number of modes for which the first basis is chosen, so that a basis of half its size usually suffices too.
@@ -103,6 +104,10 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         half = coarse.coarser.solver
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
+        across = distance_across(
+            model, lambda narrow: np.array(narrow.solver.softening), np.array(fine_softening)
+        )
+        left += BASES_OF_PLATES.factor * float(across)
     error = left / (2 * softening) + noise
     # A comparison of models with the same functions does not show an error.
     resolved = error < UNRESOLVED and coarse.solver.size < solver.size
@@ -146,4 +151,4 @@ def _margin(model: Model) -> float:
     """
     if model.discretization.order is not None:
         return 1.0
-    return (SLOW_BASES if model.lacks_one else BASES_OF_FIELDS).factor
+    return (SLOW_BASES if model.lacks_two else BASES_OF_FIELDS).factor

@@ -196,7 +196,7 @@ def equilibrium(
     with suppress(NoEquilibrium):  # the coarser model buckles later, and may have no such equilibrium yet
         of_coarse = coarse.elastica.beam.at(coarse.equilibria(speeds)[0]).tip
     growth = float(np.real(solution.eigen.eigenvalue).max())
-    error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_one else 1.0)
+    error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_two else 1.0)
     at = Words("at ", Speeds(float(speeds[0])))
     flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
@@ -235,7 +235,7 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
     assert isinstance(scene, Scene)
     branch = scene.physics.branch if branch is None else branch
     one_of("branch", branch, ("straight", "bent"))
-    return replace(scene, physics=scene.physics.with_large_deflection(branch=branch))
+    return scene.with_large_deflection(branch=branch)
 
 
 def _directions(mount: Mount) -> np.ndarray:

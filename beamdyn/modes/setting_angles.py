@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import eigh
 from scipy.optimize import brentq
 
-from beamdyn.accuracy.refinement import THREE_DISCRETIZATIONS, error_of_finest
+from beamdyn.accuracy.refinement import BASES_OF_PLATES, THREE_DISCRETIZATIONS, error_of_finest
 from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
@@ -21,6 +21,7 @@ from beamdyn.equations import effects
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, model_to_tolerance
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model, static_load
+from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
@@ -165,7 +166,9 @@ def setting_angle_limits(
     if bounded:
         of_coarse, of_coarsest = (np.array(_limits(each, top_speed)) for each in (coarse, coarse.coarser))
         errors = error_of_finest(THREE_DISCRETIZATIONS, (first, second) - of_coarse, of_coarse - of_coarsest)
-        error += float(np.nanmax([*errors, 0.0]))
+        limits = np.array([first, second])
+        across = distance_across(model, lambda narrow: np.array(_limits(narrow, top_speed)), limits)
+        error += float(np.nanmax([*(errors + BASES_OF_PLATES.factor * across), 0.0]))
     deflection = np.nan  # ratio of deflection to length, at the second limit
     if bounded and not np.isnan(second):
         mounted = replace(scene, mount=replace(scene.mount, setting_angle=second))

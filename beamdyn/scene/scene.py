@@ -147,7 +147,8 @@ class Scene(OneLine):
         _check_matrices(self.beam, self.physics)
         if not self.chooses_physics:
             check_axis(self.beam, self.physics)
-        _check_large_deflection(self)
+        if self.physics.large_deflection:
+            _check_large_deflection(self, self.physics.planes, how_without_large_deflection(self.beam))
         check_tip_load(self.tip_load, self.mount, self.physics)
         check_root_springs(self.mount, self.modelled_beam)
         check_point_springs(self.beam, self.physics)
@@ -195,6 +196,20 @@ class Scene(OneLine):
     def undamped(self) -> Scene:
         """Return the scene without damping."""
         return replace(self, damping_ratio=0.0, damping=NO_DAMPING)
+
+    def with_large_deflection(self, **chosen: Any) -> Scene:
+        """Return the scene with large deflection and `chosen` physics, for analyses that always model it.
+
+        Raises
+        ------
+        ValueError
+            If an included effect, or a part of the scene, cannot be combined with large deflection.
+        """
+        physics = self.physics.with_large_deflection(**chosen)
+        if not self.physics.large_deflection:
+            remedy = "leave it out, as this analysis always models large deflection"
+            _check_large_deflection(self, physics.planes, remedy)
+        return replace(self, physics=physics)
 
     @property
     def chooses_physics(self) -> bool:
@@ -292,11 +307,9 @@ def _check_matrices(beam: Beam, physics: Physics) -> None:
         raise InvalidValue(f"physics.{name}", getattr(physics, name), bound, Words("give ", wanted))
 
 
-def _check_large_deflection(scene: Scene) -> None:
+def _check_large_deflection(scene: Scene, planes: int, remedy: str) -> None:
     """Refuse large deflection without an equilibrium at rest, and options for small deflections only."""
-    if not scene.physics.large_deflection:
-        return
-    for name, spring in zip(ROOT_SPRINGS[: scene.physics.planes], scene.mount.root_stiffnesses, strict=False):
+    for name, spring in zip(ROOT_SPRINGS[:planes], scene.mount.root_stiffnesses, strict=False):
         if spring == 0:
             bound = "with physics.large_deflection the root needs a spring: a hinge is at rest at any angle"
             raise InvalidValue(f"mount.{name}", spring, bound, "give a soft one", "N m/rad")
@@ -305,15 +318,13 @@ def _check_large_deflection(scene: Scene) -> None:
             raise InvalidValue(f"mount.{name}", spring, bound, "leave it out", "N m/rad")
     if scene.beam.electrodes is not None and scene.beam.electrodes.resistance:
         bound = "with physics.large_deflection the layers of a harvester must be short-circuited, R = 0"
-        remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("harvester.resistance", scene.beam.electrodes.resistance, bound, remedy, "ohm")
     if scene.beam.point_springs:
         bound = "with physics.large_deflection point springs are not modelled: they keep their direction"
-        remedy = how_without_large_deflection(scene.beam)
         raise InvalidValue("point_springs", len(scene.beam.point_springs), bound, remedy)
     if scene.damping.tip_damper:
         bound = "with physics.large_deflection, the damper is not modelled: the tip also moves along the beam"
-        remedy = f"give damping.ratios, or {how_without_large_deflection(scene.beam)}"
+        remedy = f"give damping.ratios, or {remedy}"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
 
 

@@ -91,3 +91,45 @@ def test_each_field_has_more_functions_than_in_the_coarser_model() -> None:
             assert np.isinf(bd.natural_modes(scene, 1.0, 1, model.discretization).error).all()
             return
     raise AssertionError("no basis has as many functions of bending as the coarser one")
+
+
+def _error_beyond_stated(scene: bd.Scene, functions: int, modes: int, finest: int) -> float:
+    """Compute the largest ratio of the true error of a mode to the stated one."""
+    found, best = (bd.natural_modes(scene, 50.0, modes, bd.Ritz(n)) for n in (functions, finest))
+    return float((np.abs(found.frequency / best.frequency - 1) / found.error).max())
+
+
+@pytest.mark.parametrize("functions", range(11, 16))
+def test_modes_that_every_other_function_changes(functions: int) -> None:
+    """About an equilibrium, a basis with one function less changed them by a hundredth of their error."""
+    strip = bd.Beam.rectangular(0.3, 0.03, 0.004, 70e9, 2700.0)
+    scene = bd.Scene(strip, bd.Mount(0.1, 2.2, 0.4), physics=bd.Physics(large_deflection=True))
+    assert _error_beyond_stated(scene, functions, 5, 24) <= 1
+
+
+@pytest.mark.parametrize("functions", range(4, 9))
+def test_camber_has_more_functions_across_than_in_the_coarser_model(functions: int) -> None:
+    """Of five functions along the beam, the coarser model kept all that camber has across it."""
+    strip = bd.Beam.rectangular(0.3, 0.12, 0.004, 70e9, 2700.0, poissons_ratio=0.33)
+    scene = bd.Scene(strip, bd.Mount(0.2), physics=bd.Physics(camber=True))
+    assert _error_beyond_stated(scene, functions, 1, 14) <= 1
+
+
+@pytest.mark.parametrize("tolerance", [0.1, 0.01])
+def test_torsion_of_a_strip_at_a_loose_tolerance(tolerance: float) -> None:
+    """The second function of torsion across changes its mode by less than the third."""
+    strip = bd.Beam.rectangular(0.3, 0.1, 0.002, 70e9, 2700.0, poissons_ratio=0.3)
+    physics = bd.Physics(rotary_inertia=True, torsion=True)
+    scene = bd.Scene(strip, bd.Mount(0.1, 0.0, math.pi / 2), physics=physics)
+    found = bd.natural_modes(scene, 20.0, 2, tolerance=tolerance)
+    best = bd.natural_modes(scene, 20.0, 2, bd.Ritz(14))
+    assert (np.abs(found.frequency / best.frequency - 1) <= found.error).all()
+
+
+@pytest.mark.parametrize("tolerance", [0.1, 0.01])
+def test_setting_angles_of_a_cambered_strip(tolerance: float) -> None:
+    """They have bases with more functions across than the two by which their error is stated."""
+    strip = bd.Beam.rectangular(0.3, 0.12, 0.004, 70e9, 2700.0, poissons_ratio=0.33)
+    scene = bd.Scene(strip, bd.Mount(0.2), physics=bd.Physics(camber=True))
+    found, best = (bd.setting_angle_limits(scene, 50.0, tolerance=t) for t in (tolerance, 1e-5))
+    assert max(abs(found.first - best.first), abs(found.second - best.second)) <= found.error

@@ -49,3 +49,20 @@ def test_a_beam_of_many_stations_has_two_meshes_to_compare(elements: int) -> Non
     found, exact = (bd.natural_modes(scene, 3.0, 5, basis) for basis in (bd.Fem(elements), bd.Ritz(6)))
     true = np.abs(found.frequency / exact.frequency - 1)
     assert (true <= found.error).all() and (found.error < 1e-4).all()
+
+
+def _answers(scene: bd.Scene, discretization: bd.Discretization) -> np.ndarray:
+    """Compute a critical speed (as its logarithm), a moment and a setting angle, and their errors (2, 3)."""
+    critical = bd.critical_point(scene, discretization)
+    loads = bd.static_loads(scene, 50.0, at=[0.1], angle=0.7, discretization=discretization)
+    limits = bd.setting_angle_limits(scene, 50.0, discretization)
+    values = np.log(critical.speed), loads.moment[0, 0, 0], limits.first
+    return np.array([values, (critical.error, loads.moment_error[0, 0, 0], limits.error)])
+
+
+def test_meshes_of_a_strip_state_what_more_functions_across_it_would_change() -> None:
+    """A finer mesh has as many across; assumed modes have nearly twice as many."""
+    strip = bd.Beam.rectangular(0.3, 0.12, 0.004, 70e9, 2700.0, poissons_ratio=0.33)
+    scene = bd.Scene(strip, bd.Mount(0.2), gravity=9.81, physics=bd.Physics(camber=True))
+    (of_mesh, stated), (of_modes, _) = (_answers(scene, each) for each in (bd.Fem(16), bd.Ritz(16)))
+    assert (np.abs(of_mesh - of_modes) <= stated).all()

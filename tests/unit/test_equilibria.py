@@ -305,3 +305,21 @@ def test_flutter_under_a_follower_load_is_an_answer_without_a_critical_speed(
     assert shown.critical is None and shown.critical_speed == np.inf
     assert "critical speed" not in [each.words for each in frequency_screen.headline(shown)]
     assert frequency_screen.draw(shown).axes and frequency_screen.chart(shown)
+
+
+@pytest.mark.parametrize("analysis", [bd.equilibrium, bd.equilibrium_branches])
+@pytest.mark.parametrize("lacking", ["harvester.resistance", "point_springs", "damping.tip_damper"])
+def test_what_is_always_modelled_is_not_to_be_left_out(
+    analysis: Callable[[bd.Scene, float], object], lacking: str
+) -> None:
+    """The remedy named large deflection, which the scene does not have."""
+    loaded = bd.load_scene(Path(__file__).parents[2] / "examples" / "bimorph.toml")
+    held = replace(loaded.beam, electrodes=None, point_springs=[bd.PointSpring(0.02, 10.0)])
+    scene = {
+        "harvester.resistance": loaded,
+        "point_springs": replace(loaded, beam=held),
+        "damping.tip_damper": bd.Scene(harvester(0.0).beam, damping=bd.Damping(tip_damper=0.1)),
+    }[lacking]
+    with pytest.raises(InvalidValue, match="leave it out, as this analysis always models large") as refused:
+        analysis(scene, 50.0)
+    assert refused.value.field == lacking

@@ -185,6 +185,17 @@ def test_past_the_critical_speed_no_resistance_is_best():
     assert main(["best-resistance", str(EXAMPLE), "--speed", "300 rad/s"]) == 1
 
 
+@pytest.mark.parametrize("beside", [-1e-9, 1e-9])
+def test_beside_the_critical_speed(beside):
+    """The first mode is nearly free there; the circuit has the flexibility of the modes left out alone."""
+    critical = bd.critical_speed(SCENE)
+    spaces = (bd.state_space(SCENE, critical * (1 + part)) for part in (beside, -1e-6))
+    poles, farther = (np.sort(np.abs(np.linalg.eigvals(space.A))) for space in spaces)
+    np.testing.assert_allclose(poles[3:], farther[3:], rtol=1e-4)  # but for the first mode and the charge
+    with pytest.raises(ValueError, match="is at its critical speed"):
+        bd.frequency_response(SCENE, critical * (1 + beside), [1.0, 5.0])
+
+
 def test_sensitivities_of_a_scene_with_layers(finished):
     """By the coupling, which is negative, and by a begin at 0; the load changes no natural mode."""
     given = with_numbers(SCENE, {"harvester.resistance": math.inf, "harvester.start": 0.005})

@@ -147,6 +147,15 @@ def test_an_outlier_is_named_and_kept():
         assert found.value[0] > 0.0002  # it pulls
 
 
+def test_starts_that_are_no_scene_are_passed_over():
+    """A thickness beyond the width is none; nobody gave it."""
+    block = bd.Beam.rectangular(0.3, 0.05, 0.04, 70e9, 2700.0)
+    thicker = with_numbers(bd.Scene(block), {"beam.thickness": 0.044})
+    data = bd.MeasuredFrequencies(bd.natural_modes(thicker, modes=2).frequency, uncertainty=1e-3)
+    found = bd.identify(bd.Scene(block), data, {"beam.thickness": None})
+    np.testing.assert_allclose(found.value, 0.044, rtol=1e-6)
+
+
 def test_a_clamped_root_stays_clamped():
     data = bd.MeasuredFrequencies([65.23, 408.79, 1144.63], uncertainty=0.05)
     found = bd.identify(bd.Scene(OUTWARD.beam), data, {"mount.root_stiffness": None})

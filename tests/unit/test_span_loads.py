@@ -96,6 +96,19 @@ def test_two_sides_of_a_jump_and_of_a_mass():
     assert both.curvature[0, :, 0] == pytest.approx([thick[0], thin[0]], rel=1e-12)
 
 
+@pytest.mark.parametrize("discretization", ["ritz", "fem"])
+def test_shear_forces_beside_a_jump_of_the_shear_stiffness(discretization):
+    """The axis has a kink there, by which the axial force counts in that across: each side has its own."""
+    twice = bd.Table([0.0, 0.4, 0.4, 1.0], [1.0, 1.0, 0.5, 0.5])
+    stiffness = bd.Table(twice.stations, (4e4 * np.array(twice.values)).tolist())
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 500.0, shear_stiffness=stiffness)
+    scene = bd.Scene(beam, bd.Mount(0.5, 2.5), physics=bd.Physics(shear=True))
+    at = [0.4 - 1e-9, 0.4, 0.4, 0.4 + 1e-9]
+    loads = bd.static_loads(scene, 20.0, at=at, discretization=discretization, tolerance=1e-4)
+    _, before, jump, after = (*np.diff(loads.force[0, :, 1], prepend=0.0),)
+    assert max(abs(before), abs(after)) < 1e-6 * abs(jump)
+
+
 def test_points_of_the_section():
     """Bending in two planes: corners by default, and any point inside by superposition."""
     scene = bd.Scene(BEAM, bd.Mount(0.1, math.pi, bending_angle=0.5), gravity=G, physics=bd.Physics(planes=2))

@@ -52,8 +52,10 @@ _OF_ELEMENTS = 0.1  # relative eigenvalue error for which finite elements choose
 _ALL_FURTHER = 2.0
 _MANY = 10_000  # a number of modes that exceeds any discretization
 _NAMES = "ritz", "fem"
-# Smallest number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode.
-_FEWEST_FUNCTIONS = 9
+# Smallest number of functions: with fewer, the coarser basis lacks only one, which may not affect a mode; and
+# of plates: with fewer, it has as many of camber across the width, or one of torsion, where the second
+# changes less than the third.
+_FEWEST_FUNCTIONS, _FEWEST_OF_PLATES = 9, 7
 
 DiscretizationChoice: TypeAlias = "str | Discretization"  # "ritz", "fem", or an instance
 
@@ -282,7 +284,8 @@ def _first_ritz(
 ) -> Discretization:
     """Choose a basis that usually meets the target, by a formula fitted to random scenes (`benchmarks`)."""
     if scene.models_width:
-        return Ritz(min(max(5, int(np.ceil(2 + modes - np.log10(target)))), MOST_FUNCTIONS))
+        fewest = int(np.ceil(2 + modes - np.log10(target)))
+        return Ritz(min(max(_FEWEST_OF_PLATES, fewest), MOST_FUNCTIONS))
     if segments > _FEW_SEGMENTS and modes <= _MANY_ON_EACH * segments:
         coupled = (0, 1) in section_tensor(scene.modelled_beam, "bending_stiffness")
         least, per_digit, fewest = _IN_TWISTED if coupled else _IN_STRAIGHT

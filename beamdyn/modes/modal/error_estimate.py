@@ -39,9 +39,6 @@ _OF_NOISE = 4.0
 # with one segment, for one with several (whose functions converge at different rates), and for irregular
 # convergence.
 REGULAR, _ON_SEGMENTS, _IRREGULAR = (1.0, 0.01, 1e-10), (3.0, 0.05, 1e-12), (2.0, 0.3, 1e-10)
-# The three numbers, with the meanings given for `REGULAR`, for a coarser basis with one function less.  That
-# function may change a mode less than the next one does, so that convergence always counts as slow.
-_BY_ONE = 1.0, 0.01, 0.0
 # Number of functions across plates up to which the margin `BASES_OF_PLATES` was measured (with more
 # functions, convergence slows down), and the fraction of the largest distance of all modes that counts as
 # error.
@@ -200,8 +197,8 @@ def _basis_error(model: Model, fine: Eigen, half: np.ndarray, size: np.ndarray) 
         is_needed = not (of_below <= of_others).all()
     lowest = np.asarray(model.solver.lowest_at_rest if is_needed else 0.0)
     is_slender = model.scene.is_slender_beam_in_one_plane
-    margin = SLOW_BASES.factor if is_slender or model.lacks_one else BASES_OF_FIELDS.factor
-    parts = _BY_ONE if model.lacks_one else parts_of_distances(model.scene, model.discretization)
+    margin = SLOW_BASES.factor if is_slender or model.lacks_two else BASES_OF_FIELDS.factor
+    parts = parts_of_distances(model.scene, model.discretization)
     return _ritz_error(half, size, lowest, margin, parts)
 
 

@@ -115,13 +115,18 @@ class Model(FieldsOnly):
     def exceeds_coarser(self) -> bool:
         """Whether each field has functions beyond the coarser model's, as the error estimate needs.
 
-        If the coarser model has different functions, it suffices that it has fewer in total.
+        Fields of a strip need them both along it and across.  If the coarser model has different functions,
+        it suffices that it has fewer in total.
         """
         coarse = self.equations.coarse
         if coarse is None:
             return self.coarser.equations.size < self.equations.size
-        kept = {*coarse.tolist()}
-        return not any(kept.issuperset(range(b.start, b.stop)) for b in self.equations.blocks.values())
+        kept, blocks = {*coarse.tolist()}, self.equations.blocks
+        if self.scene.models_width:  # coordinates of the last function across come last
+            of_last = ((blocks[name].stop, f.of_each) for name, f in self.equations.sections)
+            if any(kept.intersection(range(end - count, end)) for end, count in of_last):
+                return False
+        return not any(kept.issuperset(range(b.start, b.stop)) for b in blocks.values())
 
     def equations_at(self, speed: float) -> Equations:
         """Build the equations of small motions at a steady speed [rad/s], about the equilibrium there."""
@@ -160,12 +165,12 @@ class Model(FieldsOnly):
         return Model(self.scene, self.discretization.coarser())
 
     @property
-    def lacks_one(self) -> bool:
-        """Whether the model for error estimates has only one function less in each field.
+    def lacks_two(self) -> bool:
+        """Whether the model for error estimates has only two functions less in each field.
 
         This is so for large deflection in space without inner breakpoints, where strains converge fast and
         functions are costly: comparison with a much smaller model would only show the error of the smaller
-        model.
+        model.  With one function less it would show nothing in modes that only every other function changes.
         """
         is_whole = isinstance(self.discretization, Ritz) and len(self.scene.modelled_beam.breakpoints) == 2
         return is_whole and self.scene.bends_in_space
@@ -173,10 +178,9 @@ class Model(FieldsOnly):
     @cached_property
     def compared(self) -> Model:
         """Model whose eigenvalues and equilibria are compared with this model's to estimate the error."""
-        if self.lacks_one and isinstance(self.discretization, Ritz):
-            return Model(
-                self.scene, replace(self.discretization, functions=self.discretization.functions - 1)
-            )
+        if self.lacks_two and isinstance(self.discretization, Ritz):
+            fewer = max(1, self.discretization.functions - 2)
+            return Model(self.scene, replace(self.discretization, functions=fewer))
         return self.coarser
 
 
@@ -340,14 +344,14 @@ def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Eq
     circuit, kept = equations.circuit, reduced.circuit
     assert circuit is not None and kept is not None
     stiffness = [p.K0 + speed**2 * p.K2 for p in (each.steady() for each in (equations, reduced))]
-    by_modes = np.linalg.solve(stiffness[1], kept.coupling)
-    bent = np.linalg.solve(stiffness[0], circuit.coupling)
-    bent = {
-        name: bent[equations.blocks[name]] - shape.matrix @ by_modes[reduced.blocks[shape.block]]
-        for name, shape in reduced.shapes.items()
-    }
-    more = sum(circuit.coupling[equations.blocks[name]] @ g for name, g in bent.items())
-    capacitance = circuit.capacitance + float(more)
+    of_modes, by_modes = np.zeros(equations.size), np.linalg.solve(stiffness[1], kept.coupling)
+    for name, shape in reduced.shapes.items():
+        of_modes[equations.blocks[name]] = shape.matrix @ by_modes[reduced.blocks[shape.block]]
+    # Near the critical speed the deflection of all modes is large; the load on those left out is not.
+    load = circuit.coupling - stiffness[0] @ of_modes
+    residual = np.linalg.solve(stiffness[0], load)
+    bent = {name: residual[equations.blocks[name]] for name in reduced.shapes}
+    capacitance = circuit.capacitance + float(load @ residual)
     return replace(reduced, circuit=replace(kept, capacitance=capacitance, bent=bent))
 
 

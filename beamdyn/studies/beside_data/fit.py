@@ -12,6 +12,7 @@ In shapes of arrays, p counts variables, S speeds, n computed and m measured fre
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -315,8 +316,11 @@ def _nearest(fitting: Fitting, starts: int, seed: int) -> list[np.ndarray]:
     tried += [
         np.array([n.place(share) for n, share in zip(numbers, each, strict=True)]) for each in shares.tolist()
     ]
-    ranks = [_unfitted(fitting.at(x)).rank for x in tried]
-    return [tried[k] for k in sorted(range(len(tried)), key=ranks.__getitem__)[:starts]]
+    ranked = [(_unfitted(fitting.at(tried[0])).rank, 0)]
+    for k, x in enumerate(tried[1:], 1):
+        with suppress(InvalidValue):  # no scene, such as a thickness beyond the width
+            ranked.append((_unfitted(fitting.at(x)).rank, k))
+    return [tried[k] for _, k in sorted(ranked)[:starts]]
 
 
 def _unfitted(modes: FittedModes) -> Fitted:
