@@ -54,7 +54,10 @@ class ModePolynomial:
     frequency: float
 
     def lines(self) -> list[str]:
-        """Return lines with the coefficients, as in blade files of the wind turbine program ElastoDyn."""
+        """Return lines with the coefficients, as in blade files of the wind turbine program ElastoDyn.
+
+        An example of a line is "    0.062200   BldFl1Sh(2) - Flap mode 1, coeff of x^2".
+        """
         name, said = (
             SHAPE_NAMES[self.mode],
             f"{self.mode.split()[0].capitalize()} mode {self.mode.split()[1]}",
