@@ -56,7 +56,8 @@ class ModePolynomial:
     def lines(self) -> list[str]:
         """Return lines with the coefficients, as in blade files of the wind turbine program ElastoDyn.
 
-        An example of a line is "    0.062200   BldFl1Sh(2) - Flap mode 1, coeff of x^2".
+        A line has a coefficient, ElastoDyn's name of the shape with the power of x in brackets, and, after a
+        hyphen, a remark such as "Flap mode 1, coeff of x^2".
         """
         name, said = (
             SHAPE_NAMES[self.mode],
