@@ -103,7 +103,7 @@ class LoadCycles(SceneResult, JudgedByRepeating):
         return known or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate the largest range with large deflection, which scales it like the tip deflection.
+        """Estimate the largest range with large deflection, scaled by the same factor as the tip deflection.
 
         `straight` is the largest range of the straight beam; it is returned, with the given `reason`, if no
         estimate is possible.
