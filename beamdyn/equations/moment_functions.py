@@ -293,7 +293,11 @@ def _build_forces(
 
 @lru_cache(maxsize=4)  # cached, as all directions share the same polynomials
 def _polynomials(spaces: MomentSpaces, counts: tuple[int, ...], continuous: bool) -> np.ndarray:
-    """Evaluate polynomials on the parts of the beam, `counts` on each, at the nodes: (polynomials, nodes)."""
+    """Evaluate polynomials in x/L at the nodes of numerical integration: shape (polynomials, nodes).
+
+    Part k of the beam, between neighbouring point masses or ends, has `counts[k]` polynomials.  If they are
+    continuous from part to part, the piecewise linear ones are included in any case.
+    """
     return spaces.polynomials(spaces.nodes.xi, counts, continuous)
 
 

@@ -167,7 +167,11 @@ def _size(column: CsvColumn) -> float:
 
 
 def read_response(text: DataText, half: Half, speed: float | None) -> MeasuredResponse:
-    """Read a frequency response: "frequency [Hz], tip by tip force [mm/N], phase [deg]"."""
+    """Read a frequency response with headings such as "frequency [Hz], tip by tip force [mm/N], phase [deg]".
+
+    "tip by tip force" is the amplitude of an output, the tip deflection, divided by that of an input, the tip
+    force.  The column of phases is optional.
+    """
     known = {"frequency": Frequency("Hz", least=0.0), "phase": Quantity("rad")} | _SPEED
     table = read_csv(text, known, {name: name for name in known})
     others = [column for column in table.columns if not column.name]

@@ -67,7 +67,8 @@ def read_measurements(
 
     Returns
     -------
-    MeasuredFrequencies, MeasuredHistory, MeasuredPeaks, MeasuredLoads or MeasuredResponse
+    MeasuredFrequencies (of natural frequencies or mode shapes), MeasuredHistory, MeasuredPeaks, MeasuredLoads
+    or MeasuredResponse
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Tables of a scene's TOML file, whose texts have units, and the objects that they describe."""
+"""Tables of a scene's TOML file, and the objects that they describe; quantities are texts with units."""
 
 from __future__ import annotations
 

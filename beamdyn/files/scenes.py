@@ -167,9 +167,9 @@ class RecordedQuantity(Quantity):
 
 
 @cache
-def _si_value(unit: str, of: str) -> Decimal:
-    """Return the size of a unit in SI units as an exact decimal number."""
-    return Decimal(repr(quantity(f"1 {unit}", of)))
+def _si_value(unit: str, si_unit: str) -> Decimal:
+    """Return the size of a unit in terms of an SI unit, such as 0.001 for mm and m, as a decimal number."""
+    return Decimal(repr(quantity(f"1 {unit}", si_unit)))
 
 
 FILE = "file"

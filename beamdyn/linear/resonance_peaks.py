@@ -108,7 +108,8 @@ def find_peaks(
     band : tuple of float
         Lowest and highest frequency [Hz].
     tolerance : float
-        Target of the error, relative to the magnitude and to the width of a peak; rounding if not given.
+        Target of the errors of a peak: of its magnitude relative to the magnitude, of its frequency and
+        bandwidth relative to the bandwidth.  With 0, they are computed to within rounding.
     """
     share = max(_SHARE * tolerance, _ROUNDING)
     # Highest frequency at which the response is sampled, as flanks of peaks reach beyond the band.

@@ -96,14 +96,14 @@ class LoadCycles(SceneResult, JudgedByRepeating):
     def solve(self, scene: Scene, name: str) -> SolvedValues:
         """Find the largest range with the effect `name` added to the scene.
 
-        It is estimated from the change of the deflection if `TransientLoads.as_deflection` can do so;
-        otherwise a simulation is repeated.
+        For large deflection, and for effects estimated from the natural frequency alone, the range is taken
+        to change in proportion to the tip deflection; for other effects a simulation with the effect is run.
         """
         known = None if self.loads is None else self.loads.as_deflection(self.judged(self), name)
         return known or super().solve(scene, name)
 
     def bent_values(self, straight: np.ndarray, reason: str) -> SolvedValues:
-        """Estimate the largest range with large deflection, from the change of the tip deflection.
+        """Estimate the largest range with large deflection, scaled by the same factor as the tip deflection.
 
         `straight` is the largest range of the straight beam; it is returned, with the given `reason`, if no
         estimate is possible.

@@ -22,9 +22,9 @@ If T_22 < 0, or T_22 = 0 and T_12 is not, the tip body topples, however stiff th
 T >= 0, then F >= 0.
 
 **Precone** eta gives N = N_B cos^2 eta + r N_A cos eta.  Divided by cos^2 eta, F is the form above with
-a = -r / cos eta, the coefficients 1 / cos^2 eta in place of c^2 = 1 in the plane of rotation and tan^2 eta in
-place of 0 out of it, J_e - J_1 less tan^2 eta B, and s^2 = 1 - c^2 of either sign: the integral of
-(s^2 x - a) rho A u^2 / x is not negative where s^2 L >= a.
+a = -r / cos eta.  In the plane of rotation c^2 is 1 / cos^2 eta in place of 1, out of it tan^2 eta in place
+of 0.  In either plane s^2 = 1 - c^2, which may have either sign.  The integral of (s^2 x - a) rho A u^2 / x
+is not negative where s^2 L >= a.
 
 **Two planes.**  Neither bending stiffness nor twist is in F, which splits into two forms of this kind, in the
 plane of rotation (c = 1) and out of it (s = 1): a critical speed exists if it does in either.  A tip body has
@@ -45,33 +45,36 @@ inertia between both planes, may lower F without limit in an infinitely short be
 positive, the last section gives a speed below which they cannot cause buckling, usually one at which the
 axial strain of the beam has passed 1 %, where linear theory ends.
 
-**String.**  Otherwise, minimized over D, F is the form of a string with a mass at its end.  Its lowest
-eigenvalue decides: F >= 0 if it is at least 1.  It converges fast, as without bending stiffness there are no
-thin layers.
+**String.**  Otherwise, minimized over D, F is the form of a string with a mass at its end: the work of the
+tension minus that of centrifugal forces.  The smallest ratio of the first to the second, the lowest
+eigenvalue of the string, decides: F >= 0 if it is at least 1.  Ritz's method finds this eigenvalue with few
+functions, as without bending stiffness there are no boundary layers.
 
-**Toppling.**  Let F0 be the form F above for a slender beam, and E twice the energy of bending and of
+**Toppling.**  Let F0 be the form F above for a slender beam, and W twice the strain energy of bending and of
 the springs at the root.  With the tilt theta of the sections (theta2 in the plane of rotation, theta3 out of
 it), the tensor I of their rotary inertia and that of the tip body, B, rotation adds to F0
 
     -int (I33 theta3^2 + I23 theta2 theta3) + B23 theta2 theta3 at the tip
     + int g (theta2 theta3' - theta3 theta2'),    g(x) = int_x^L I23 - B23,
 
-where B33 theta3^2 at the tip is a part of F0.  With the compliance C(x), the integral of the sections' from
-the root to x plus that of the springs, theta_i^2 <= C_ii E.  So rotation adds at least -r E per squared
-speed, with
+where B33 theta3^2 at the tip is a part of F0.  With the compliance C(x), the integral of the sections'
+compliances from the root to x plus the compliance of the springs, theta_i^2 <= C_ii W.  So rotation adds at
+least -R W per squared speed, with
 
-    r = int (I33 C33 + |I23| (C22 C33)^(1/2)) + |B23| (C22 C33)^(1/2) + (int g^2 trace(C) / EI)^(1/2),
+    R = int (I33 C33 + |I23| (C22 C33)^(1/2)) + |B23| (C22 C33)^(1/2) + (int g^2 trace(C) / EI)^(1/2),
 
-with the smaller EI at x.  **If F0 >= 0, no speed below r^(-1/2) is critical.**  For a uniform beam that is
-2^(1/2) times the speed of sound in its material, over the length.
+with the smaller bending stiffness EI at x.  **If F0 >= 0, no speed below R^(-1/2) is critical.**  For a
+uniform beam that is 2^(1/2) times the speed of sound in its material, over the length.
 
 A hinge has an infinite C.  If it turns out of the plane only, where F0 >= int N u'^2, split theta3 into its
-mean with the weight N and the rest, at most (e E)^(1/2) with e = int 1/EI.  If S = int N - 2 int I33 > 0,
+mean with the weight N and a remainder, which is at most (e W)^(1/2) with e = int 1/EI.  If
+S = int N - 2 int I33 > 0,
 
-    r = 2 e int I33 + A^2 / (4 S) + A e^(1/2) + G,    G = (int g^2 C22 / EI)^(1/2),
-    A = int |I23| C22^(1/2) + |B23| C22^(1/2) + (int g^2 / EI)^(1/2).
+    R = 2 e int I33 + p^2 / (4 S) + p e^(1/2) + q,    q = (int g^2 C22 / EI)^(1/2),
+    p = int |I23| C22^(1/2) + |B23| C22^(1/2) + (int g^2 / EI)^(1/2).
 
-With shear, of which u' has a part, S = int N / 2 - 2 int I33, and r is at least N / (kappa G A) everywhere.
+With shear, which causes a part of u', S = int N / 2 - 2 int I33, and R is at least N divided by the shear
+stiffness kappa G A, everywhere.
 
 Precone eta multiplies all but B23 by cos^2 eta <= 1, and adds sin^2 eta I to the form, which is not negative;
 B23 has the factor cos^2 eta - 2 sin^2 eta.  The arguments for a hinge and for a short bend are not used then.
@@ -294,7 +297,7 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
     n_a, n_b = axial_tension(beam)
     at = np.append(xi[:-1], 1.0)  # the last cell takes the value at the tip
     tension = n_b(at) - _inward(scene) * n_a(at)
-    ratios = [np.inf]  # candidates of r (module's docstring) from the two arguments
+    ratios = [np.inf]  # candidates of R (module's docstring) from the two arguments
     if not any(k == 0 and (n or oblique) for k, n in zip(springs, components[1], strict=True)):
         both = np.sqrt(C[:, 0, 0] * C[:, 1, 1])
         ratio = width @ (moments * C[:, 1, 1] + np.abs(products) * both)
@@ -304,9 +307,9 @@ def _decide_toppling(scene: Scene) -> Buckling | None:
     spare = float(width @ tension) / (2 if shear else 1) - 2 * float(width @ moments)
     if not mount.precone and spare > 0 and (tension >= 0).all() and not in_plane.any():
         g2 = torque**2 * flexibility * width
-        A = float(width @ (np.abs(products) * slope) + abs(body) * slope[-1] + np.sqrt(g2.sum()))
-        e, G = float(width @ flexibility), float(np.sqrt(g2 @ slope**2))
-        ratio = 2 * float(width @ moments) * e + A**2 / (4 * spare) + A * e**0.5 + G
+        p = float(width @ (np.abs(products) * slope) + abs(body) * slope[-1] + np.sqrt(g2.sum()))
+        e, q = float(width @ flexibility), float(np.sqrt(g2 @ slope**2))
+        ratio = 2 * float(width @ moments) * e + p**2 / (4 * spare) + p * e**0.5 + q
         if shear:
             smaller = np.linalg.eigvalsh(_tensor(beam, "shear_stiffness", xi, planes))[:, 0]
             ratio = max(ratio, float((tension / smaller).max()))

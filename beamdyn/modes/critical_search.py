@@ -28,7 +28,7 @@ _OF_SHORTEST = 4 * float(np.finfo(float).eps)
 _ROUNDING_OF_BENT = 1e-10
 # Smallest error target for meshes of a bent beam, because each mesh costs as much as all coarser meshes.
 _MESHES_OF_BENT = 1e-5
-_TO_HALF = 4  # number of steps from a basis to a basis of about half the size
+_TO_HALF = 4  # number of times that a basis is made coarser to get one of about half its size
 
 
 @dataclass(frozen=True)

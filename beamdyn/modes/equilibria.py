@@ -41,7 +41,7 @@ from beamdyn.scene.validity import check_speeds
 _FINE = 0.05  # nondimensional arc length of a continuation step, small enough for smooth curves in a plot
 _MOST_POINTS = 2000  # largest number of points of a branch
 _STEEPEST = 2 * np.pi  # largest slope angle [rad] up to which a branch is continued
-_UNSTABLE = "the straight beam, for which effects are estimated, is unstable"
+_UNSTABLE = "the effects are estimated on the straight beam, which is unstable"
 _JUST_BELOW = 1 - 1e-9  # ratio of the last listed speed of the stable straight beam to its critical speed
 _ROUNDING = 1e-13  # rounding error of a position, relative to the length
 # Relative rounding error of loads and stiffness, which deflects the beam much more near buckling.

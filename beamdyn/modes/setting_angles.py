@@ -161,7 +161,8 @@ def setting_angle_limits(
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = model_to_tolerance(tangential, discretization, speeds, 1, tolerance)
     first, second = _limits(model, top_speed)
-    # At an infinite top speed only rounding is stated, because the limits then depend on the given basis.
+    # At an infinite top speed the limits are defined for the given basis only, so that their only error is
+    # rounding.
     error, coarse = _ROUNDING, model.coarser
     if bounded:
         of_coarse, of_coarsest = (np.array(_limits(each, top_speed)) for each in (coarse, coarse.coarser))
@@ -187,9 +188,14 @@ def setting_angle_limits(
 
 
 def _limits(tangential: Model, top_speed: float) -> tuple[float, float]:
-    """Compute both setting angles [rad] from the stiffness A - cos(setting angle) B per squared speed.
+    """Compute the setting angles [rad] at which the first squared frequency has slope 0 over squared speed.
 
-    B is the radius of the root times the stiffness due to the tension by a unit root acceleration.
+    Return two angles: the first for the slope at rest, the second for the slope at the top speed; nan if
+    there is no such angle.
+
+    The stiffness matrix is K0 + speed^2 (A - cos(setting angle) B).  A belongs to a setting angle of 90 deg,
+    at which `tangential` is modelled, and B is the radius of the root times the stiffness due to the tension
+    by a unit acceleration of the root.
     """
     pencil, stiffness = tangential.solver.pencil, tangential.equations.matrices[0]
     # The matrix "root_axial" is minus K_GA, the stiffness by tension.

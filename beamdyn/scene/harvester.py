@@ -204,11 +204,13 @@ class Harvester(FieldsOnly):
     def _as_plate(
         self, bare: Rectangle, span: tuple[float, float], sides: tuple[float, float], stiffness: float
     ) -> tuple[Laminate, Coupled | None]:
-        """Return the strip with layers as a plate, and the electrodes' constants of sections held flat.
+        """Return the strip with layers as a plate, and the electrodes' constants for flat cross-sections.
 
-        If Poisson's ratio of the strip or of the layers is not known, the plate has none, and None replaces
-        the constants.  `span` is that of the layers in x/L, `sides` are the width and thickness of the bare
-        strip [m], `stiffness` is the bending stiffness per width of the beam with layers [N m].
+        The constants are the bending moment per voltage and the capacitance per length of a strip whose
+        cross-sections cannot curve.  If Poisson's ratio of the strip or of the layers is not known, the plate
+        has none, and None replaces the constants.  `span` is that of the layers in x/L, `sides` are the width
+        and thickness of the bare strip [m], `stiffness` is the bending stiffness per width of the beam with
+        layers [N m].
         """
         (b, h), t, nu = sides, self.thickness, self.poissons_ratio
         count = 1 if self.connection == "unimorph" else 2

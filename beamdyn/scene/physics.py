@@ -44,8 +44,9 @@ class Physics:
         torsion, shear or stretch a geometrically exact beam in space.  It cannot be combined with camber, and
         torsion is then described by constants of the sections, with their full rotary inertia.
     branch : {"straight", "bent"}
-        Branch of equilibria under large deflection: "straight" is reached from rest as the speed rises,
-        "bent" is another equilibrium that exists at high speed, bent to the other side.
+        Branch of equilibria under large deflection: "straight" is reached from rest as the speed rises (the
+        beam bends if rotation loads it across).  "bent" is the other stable equilibrium, which exists at high
+        speed: bent to one side if the first is straight, to the opposite side if the first is bent.
     camber : bool
         Change of shape of a rectangular section (anticlastic curvature by Poisson's ratio), which a clamped
         root hinders.
@@ -81,7 +82,7 @@ class Physics:
     large_deflection: Annotated[bool, Described(meaning="slopes and angles of any size")] = False
     branch: Annotated[
         Literal["straight", "bent"],
-        Described(meaning="equilibria of large deflection: reached from rest, or bent to the other side"),
+        Described(meaning="equilibrium of large deflection: reached from rest, or another at high speed"),
     ] = "straight"
     camber: Annotated[
         bool, Described(meaning="camber of a rectangular section, which a clamped root hinders")

@@ -157,7 +157,10 @@ class Profile(FieldsOnly):
         return _of_series(self.breakpoints, factor * self.series)
 
     def outboard_integral(self) -> Profile:
-        """Integrate from xi to 1: for a mass per length, this is the mass outboard of each section."""
+        """Integrate the property over x/L, from each section to the tip.
+
+        For a mass per length, the result times the length L is the mass outboard of each section.
+        """
         inner = numerics.integrate_series(-np.diff(self._ends) / 2 * self.series)
         # The integral over each segment is the value of its series at the left end, t = -1.
         of_segments = inner[::2].sum(axis=0) - inner[1::2].sum(axis=0)

@@ -89,7 +89,9 @@ def growth_rate(system: PeriodicSystem) -> tuple[np.ndarray, np.ndarray]:
     rows = np.flatnonzero(~singular)
     if len(rows):
         R, n = R[rows], system.size
-        # The eigenvectors are scaled so that |V| is symmetric.
+        # Scale the eigenvectors so that the periodic coefficients V, as matrices in these modes, have
+        # symmetric magnitudes.  Otherwise a small Gershgorin disc of one mode, whose radius is a row sum,
+        # would mean a large one of another.
         R = R / (np.linalg.norm(R[:, :n], axis=1) * np.sqrt(np.abs(sigma[rows])))[:, None, :]
         V = _balance(sigma[rows], [(f[rows], np.linalg.solve(R, B[rows] @ R)) for f, B in periodic])
         free = _MeanMotion(system.rates[rows], system.coupling, sigma[rows], V)
@@ -196,13 +198,16 @@ class _MeanMotion:
     Parameters
     ----------
     rates : ndarray, shape (S, 2)
-        Rates of the phases [rad/s].
-    coupling : set of pair
-        Harmonics of the periodic coefficients.
+        Rates of the two phases, of rotation and of the road [rad/s].
+    coupling : set of (int, int)
+        Harmonics of the periodic coefficients: (j, k) has the frequency j rates[:, 0] + k rates[:, 1].
     sigma : ndarray of complex, shape (S, modes)
         Eigenvalues of the mean equations [1/s].
     V : list of (ndarray, ndarray)
-        Periodic coefficients: a spectrum (S, N, N), and its matrix in the modes (S, modes, modes).
+        Periodic coefficients of the equations in these modes.  Each is the product of a scalar function of
+        the two phases and a constant matrix.  The first array (S, N, N) has the function's Fourier
+        coefficients on a grid of N x N phases, that of the harmonic (j, k) at [:, j, k]; the second (S,
+        modes, modes) is the matrix.
     """
 
     rates: np.ndarray

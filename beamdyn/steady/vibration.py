@@ -35,7 +35,9 @@ UNSTABLE = "parametric instability"
 _TURNING, _PAST = "turns freely about the root", "past the critical speed"
 _MISSING, _UNSTABLE_MEAN = "no equilibrium", "unstable equilibrium"
 WITHOUT_STABLE_MEAN = _PAST, _TURNING, _MISSING, _UNSTABLE_MEAN
-_MOST_INTERACTIONS = 5  # largest number of interactions with the periodic coefficients in the response
+# Largest number of interactions in the response, if the user gives none.  In an interaction, harmonics of the
+# response are multiplied by the periodic coefficients, which gives further harmonics.
+_MOST_INTERACTIONS = 5
 _MOST_UNKNOWNS = 2**17  # number of unknowns solved at once: they fit the processor's cache
 # Order of the axes at the tip: direction of bending, direction across, direction along the beam.
 _ACROSS_THEN_ALONG = [1, 2, 0]

@@ -345,9 +345,10 @@ def critical_speeds_of(
 def _search(
     designs: SimilarDesigns, refinement: Refinement, rows: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute critical speeds of the designs `rows`, their errors, and whether these meet the target.
+    """Compute critical speeds of the designs `rows` [rad/s], and their relative errors.
 
-    Each basis is compared with a basis of about half the size, as for a single design.
+    The third array states whether each error meets the target.  Each basis is compared with a basis of about
+    half the size, as for a single design.
     """
 
     def solve(batch: np.ndarray, basis: Discretization) -> BasisAnswers:

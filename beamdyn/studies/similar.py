@@ -349,7 +349,10 @@ class PencilFamily:
 
 @lru_cache(maxsize=8)
 def _node_scenes(reference: Scene, nodes: Nodes) -> list[Scene]:
-    """Build the reference beam for each combination of the values of the quantities."""
+    """Build the reference scene with each combination of the quantities' values at the nodes.
+
+    The values of the last quantity change fastest from scene to scene.
+    """
     grids = np.meshgrid(*(values for _, values in nodes), indexing="ij")
     points = zip(*(grid.ravel().tolist() for grid in grids), strict=True)
     names = [name for name, _ in nodes]

@@ -34,9 +34,12 @@ from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import size_per_coordinate
 from beamdyn.transient.trajectory import SAMPLES, Trajectory, magnitude
 
-# Largest number of passes over the coupled modes of a stretch, after a first pass without coupling.
+# In a stretch, the difference between the run and a model with more coordinates is computed mode by mode.
+# The first pass neglects the coupling of the modes; each later pass takes the coupling forces from the pass
+# before.  This is the largest number of later passes.
 _MOST_PASSES = 4
-# The passes end when a pass changes the difference from the larger model by at most this relative amount.
+# Largest change of that difference from one pass to the next, relative to the difference, at which passes
+# end.
 _SETTLED = 0.1
 # Number of stretches in a segment of changing speed, and in a motion given by samples.
 _STRETCHES, _OF_RECORD = 8, 32

@@ -159,7 +159,11 @@ class RecordSteps:
         return RootMotion(*(np.add.reduceat((v[:, None] @ weights)[:, 0], self.first) for v in values))
 
     def nodes_in_piece(self, count: int) -> int:
-        """Choose the number of nodes or stages per piece that is as exact as `count` nodes in a step."""
+        """Choose the number of nodes (or stages) in each piece of a step; a step of one piece needs `count`.
+
+        A piece is an interval between two samples of the motion.  If every step has several pieces, fewer
+        nodes in each are as accurate.
+        """
         return min(count, _IN_EACH) if self.counts.min() >= _MANY_PIECES else count
 
 
@@ -266,8 +270,9 @@ def propagate_record(
 ) -> RecordSegment:
     """Integrate over unequal steps by Gauss collocation.
 
-    Blocks of many equal steps, each between two samples, use maps that are expanded in a series about the
-    mean motion of the block.
+    Many successive steps of equal length, with no sample of the motion inside a step, form a block.  Their
+    maps are expanded in a series about the mean motion of the block.  For other steps, the equations of each
+    step are solved.
 
     Parameters
     ----------

@@ -29,7 +29,9 @@ _GOLDEN = 0.6180339887498949
 # Fractions of a step at which the interpolation error is largest.
 INTERPOLATION_POINTS = np.array([0.1, 0.4, 0.6, 0.9])
 UNRESOLVED_PHASE = 0.05  # phase error per step [rad] above which a mode counts as unresolved
-_ROUNDING = 1e-14  # rounding error of a step, relative to the sum of the magnitudes of the terms
+# Rounding error of each component of the state at the end of a step.  The component is a sum of products, of
+# the entries of a matrix and the state at the start; the error is relative to the sum of their magnitudes.
+_ROUNDING = 1e-14
 
 _PIECES_CHECKED = 128  # number of sample intervals in the checked steps, unless that gives too few steps
 _FEWEST_CHECKED = 48

@@ -135,9 +135,14 @@ class _StepMapSeries:
         return gauss.add_drift(gauss.increment(self.X0, self.h, self.table), self.h, first=0)[:, None]
 
     def _parts(self) -> tuple[np.ndarray, np.ndarray]:
-        """Compute the maps from loads at the nodes to the state at the end of a step, and W = R - Z X0.
+        """Compute two factors of the series: maps from forces at nodes to the end of a step, and W.
 
-        R, Z and X0 are explained in the class.
+        The nodes are the s collocation points in a step.  The first array, (P, s, 2 n, n), maps forces at the
+        nodes to the state at the end of the step, for stiffness factors e = 0.  The second is
+        W = R - Z X0, (P, m, s, n, 2 n + s l): the change of the forces at the nodes per unit of each factor
+        e, for each entry of z: the state at the start of the step, and the load factors g at the nodes.  R
+        and Z are the contributions of the factors to the right and the left side of the collocation
+        equations; X0 maps z to the accelerations at the nodes for e = 0.
         """
         P, s, n = len(self.Y), len(self.table.c), self.size
         ends = gauss.increment(self.Y, self.h, self.table).reshape(P, 2 * n, s, n)
@@ -287,10 +292,11 @@ class _Block:
 
 
 def _products(T: np.ndarray, monomials: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Multiply each polynomial in T by each monomial, row by row.
+    """In each row, multiply each value in T by each entry of `monomials`: (rows, products).
 
-    Only as many polynomials are used as `values` has coefficients; the products are the weights with which
-    these coefficients are summed.
+    A row of T has the values of Chebyshev polynomials at the start of one step.  Only the first len(values)
+    of them are used, one for each coefficient in `values`.  The products are the weights with which these
+    coefficients are summed.
     """
     return (T[:, : len(values), None] * monomials[:, None, :]).reshape(len(T), -1)
 

@@ -160,7 +160,8 @@ def _whole_numbers(brake: BrakeType[Any], axis: Axis) -> np.ndarray:
     low, high = np.ceil(min(axis.given)), np.floor(max(axis.given))
     if high - low >= brake.most_cases:
         bound = f"there are more than {brake.most_cases} whole numbers from {low:.6g} to {high:.6g}"
-        raise InvalidValue(FIND, axis.input.path, bound, f'give bounds, such as "{axis.input.path}=1:10:10"')
+        remedy = f'search in a smaller range: "{axis.input.path}=1:10:10" is 10 numbers from 1 to 10'
+        raise InvalidValue(FIND, axis.input.path, bound, remedy)
     return np.arange(low, high + 1)
 
 

@@ -108,9 +108,11 @@ def _find_pin(motion: ShoeMotion, progress: float, name: str, x: float, y: float
 
 
 def _find_contact(motion: ShoeMotion, progress: float, x: float, y: float) -> dict[str, float]:
-    """Find the contact angle with which the contact is drawn in the direction of (x, y).
+    """Find the contact angle for which the lining's contact point is drawn in the direction of (x, y).
 
-    At rest, also find the clearance with which the contact is drawn at (x, y).
+    `progress` tells how far the shoe has moved: 0 at rest, 1 with the lining on the drum. If it is 0, also
+    find the clearance for which the contact point is drawn at (x, y) itself. Return the values by the names
+    of the inputs.
     """
 
     def residual(angle: np.ndarray) -> np.ndarray:

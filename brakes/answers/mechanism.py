@@ -264,7 +264,8 @@ class MechanismAnswer(planar.PlanarAnswer):
         drawn = drawings.open_and_closed(self.equilibrium.position, now, "\n".join((title, *captions)))
         if now.status == "self-locking":
             drawn = drawings.with_lock(drawn, now, self._mechanism.unknown_loads[-1].name)
-        points = getattr(self.design, "points", {})  # a named caliper has dimensions, not points
+        # The input of a caliper that is chosen by a name has dimensions instead of points.
+        points = getattr(self.design, "points", {})
         return drawings.with_points(drawn, {name: (float(x), float(y)) for name, (x, y) in points.items()})
 
     def _travelled(self, index: int) -> str:

@@ -90,7 +90,9 @@ def _of_stop(design: VehicleInput) -> tuple[Output, ...]:
 def _outputs(design: VehicleInput) -> tuple[Output, ...]:
     """Describe all outputs.
 
-    Names of outputs end in "front" or "rear", the axle that is downhill or leads; those of the lever do not.
+    The names of outputs end in "_front" or "_rear".  This is the axle that is downhill while the vehicle
+    stands on a slope, and that is ahead in the direction of travel during a stop. Outputs of the lever have
+    no such ending.
     """
     ways = tuple(
         Output(f"{o.name}_{axle}", f"{o.words}, {axle} downhill", o.of, o.unit, o.scale)

@@ -78,7 +78,7 @@ QUANTITIES = {DescribedPoint: PointQuantity, DescribedDirection: DirectionQuanti
 
 
 _DRIVER = Field(
-    description="load that drives a mechanism without [caliper]; with friction, positive travel is squeezing"
+    description="load that drives a mechanism without [caliper]; in squeezing, it moves in its own direction"
 )
 _FRICTION = Quantity("", "mu", "friction coefficient of pins for which none is given", least=0, most=10)
 _Loss = Annotated[float, Quantity("m", "", "thicknesses lost by each pad", least=0)]

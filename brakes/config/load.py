@@ -74,7 +74,8 @@ class CurveQuantity(Quantity):
 
 _TABLES = {FrictionCurve: CurveQuantity}
 _OF_A_STOP = ("inertia", "speed", "heated_mass", "specific_heat", "load_torque", "free_angle", "most_pv")
-# Keys of [heat] in a forklift's file, where other tables describe the stop, so that `_OF_A_STOP` is left out.
+# Keys of [heat] in a forklift's file: fields of `Duty`, but not those in `_OF_A_STOP`, because other tables
+# of that file describe the stop.
 REPEATED = fields_of(Duty, _TABLES, _OF_A_STOP)
 
 if TYPE_CHECKING:

@@ -45,7 +45,9 @@ def _places(band: Band) -> tuple[np.ndarray, tuple[np.ndarray, ...]]:
     r, half = float(band.drum_radius), float(band.wrap) / 2
     a, s, far = (float(arm) for arm in (band.first_arm, band.second_arm, band.force_arm))
     rim = arc((0, 0), r, np.pi / 2 + half, np.pi / 2 - half, 121)
-    middle = np.array([(s - a) / 2, -1.45 * r])  # the fulcrum; the two ends are on both sides of the drum
+    # Fulcrum of the lever: one end of the band is as far to the right of the drum's centre as the other is to
+    # the left.
+    middle = np.array([(s - a) / 2, -1.45 * r])
     return rim, tuple(middle + np.array([x, 0.0]) for x in (a, -s, 0.0, far))
 
 

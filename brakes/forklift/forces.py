@@ -449,7 +449,7 @@ def _warnings(levers: Levers, friction: np.ndarray, lining: Numbers | None) -> l
         worst = ratio.flat[np.nanargmax(np.abs(ratio - 1))] if np.isfinite(ratio).any() else 1.0
         if abs(worst - 1) > _FRICTION_DIFFERS:
             sentences.append(
-                f"the torque needs {worst:.3g} times the friction that the lining has: the forces are not "
-                "those of this lining; leave out the torque, or the stop that it comes from"
+                f"the given torque needs {worst:.3g} times the lining's friction: the forces are not those "
+                "of this lining; for those, leave out the torque, or the stop that gives it"
             )
     return sentences

@@ -48,9 +48,12 @@ class Levers(HasLevers):
 
     Every value may be an array, one entry per case.
 
-    The drum turns counter-clockwise and the right shoe leads. The right shoe carries P_L (cos alpha1, -sin
-    alpha1) and Q (cos gamma, sin gamma); the left shoe carries P_T (-cos alpha2, -sin alpha2) and
-    -Q (cos gamma, sin gamma). The drum adds normal forces A, C and friction forces B, D.
+    The drum turns counter-clockwise; the right shoe is the leading one, the left shoe the trailing one. P_L
+    and P_T are the forces of the pistons on the leading and the trailing shoe, Q is the force of the adjuster
+    between both shoes. With x to the right and y upward, P_L (cos alpha1, -sin alpha1) and Q (cos gamma, sin
+    gamma) act on the leading shoe, P_T (-cos alpha2, -sin alpha2) and -Q (cos gamma, sin gamma) on the
+    trailing shoe. The drum exerts the normal force A and the friction force B on the leading shoe, C and D on
+    the trailing shoe.
 
     Parameters
     ----------

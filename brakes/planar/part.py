@@ -305,7 +305,7 @@ class Joint(Part):
     is_hinge: ClassVar[bool] = False
 
     def friction_laws(self) -> tuple[FrictionLaw, ...]:
-        """Return the friction laws of the joint; those with a coefficient of 0 are not used."""
+        """Return the friction laws of the joint; the mechanism ignores laws with a coefficient of 0."""
         return ()
 
     def size(self, multiplier: np.ndarray) -> np.ndarray:

@@ -246,7 +246,8 @@ def collect_result(
     sizes = _sizes(mechanism, balance.rows, shown)
     ways = one_way_parts(mechanism.parts)
     wrong_way = find_wrong_way(ways, sizes["magnitudes"] | sizes["amplitudes"], tolerance(system) * scale)
-    # Virtual work of loads and friction in free motions; if there are none, the sum of forces on the ground.
+    # Check of the equilibrium.  In the motions that the joints allow, the virtual work of loads and friction
+    # must be 0.  If they allow no motion, the sum of all forces and couples on the ground must be 0 instead.
     loads = np.where(np.arange(multiplier.shape[1]) < system.constraints, 0.0, multiplier)
     work = np.abs(times(constraints.null_rows(), balance.forces_on_bodies(loads))).max(axis=1)
     received = [np.abs((part[:, :, -1] * multiplier).sum(axis=1)) for part in balance.rows[1:3]]

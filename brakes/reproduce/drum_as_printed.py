@@ -192,9 +192,9 @@ def shown() -> Iterator[Group]:
     title = "The same brake by the corrected mechanics, with the paper's pressure: rho [mm], torques [N m]"
     yield table(title, heads, lines, ())
     heading = (
-        "What is wrong in the paper, and what follows at its longest arc (80 deg)\n"
-        "A pmax: width times radius times largest pressure; K, S, C: integrals of sin, sin^2, sin cos;\n"
-        "n = c S - b C and d = r K - b S - c C: arms of the normal and of the friction forces about the pin"
+        "Errors of the paper, and their consequences for its longest lining (80 deg). Drum radius r, pin at\n"
+        "(b, -c); A pmax: width times r times largest pressure; K, S, C: integrals of sin, sin^2, sin cos;\n"
+        "n = c S - b C, d = r K - b S - c C: lever arms of the normal and the friction forces about the pin"
     )
     yield errata_table(heading, errata())
 

@@ -101,7 +101,7 @@ class Holding(Result):
     >>> bicycle = vehicle.Vehicle(80.0, cg_behind_front=0.62, cg_height=1.10, wheelbase=1.02)
     >>> road = vehicle.Road(slope=0.3, friction=0.8)
     >>> vehicle.hold(bicycle, road, braked="rear", downhill="front").message
-    'slips past 14.6307 deg: on 17.1887 deg it slips'
+    'slips on slopes above 14.6307 deg: on the given 17.1887 deg it slips'
     """
 
     vehicle: Vehicle
@@ -134,8 +134,9 @@ class Holding(Result):
     def message(self) -> str:
         """Sentence on the given slope and the motion on slopes past the largest; for a single case only."""
         on, most = np.degrees(float(self.road.slope)), np.degrees(float(self.largest_slope))
-        what = {"too near to decide": "it is too near to decide"}.get(str(self.status), f"it {self.status}")
-        return f"{self.limited_by} past {most:.6g} deg: on {on:.6g} deg {what}"
+        near = {"too near to decide": "it is too near to decide whether it holds"}
+        what = near.get(str(self.status), f"it {self.status}")
+        return f"{self.limited_by} on slopes above {most:.6g} deg: on the given {on:.6g} deg {what}"
 
 
 def hold(

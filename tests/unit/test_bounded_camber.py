@@ -66,7 +66,7 @@ def test_large_deflection_changes_modes_of_bending_beside_those_of_torsion() -> 
         plate.left_out[BENT][of_bending], plain.left_out[BENT], rtol=1e-5
     )  # fewer functions
     assert np.isnan(plate.left_out[BENT][~of_bending]).all()
-    assert plate.left_out_effects.not_known[BENT] == "computed only for bending modes"
+    assert plate.left_out_effects.not_known[BENT] == "its effect is computed only for bending modes"
 
 
 def test_modes_of_camber_are_named_where_the_model_lacks_them() -> None:

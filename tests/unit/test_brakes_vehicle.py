@@ -89,8 +89,8 @@ def test_both_directions_of_parking(run, truck):
     assert row(out, "tips over the lower axle past")[0] == "15.245"
     code, _, err = run("vehicle", truck, ('slope = "15 %"', 'slope = "28 %"'))
     assert code == NO_ANSWER
-    assert "front axle downhill: rolls past 14.6061 deg: on 15.6422 deg it rolls" in err
-    assert "rear axle downhill: rolls past 14.6061 deg: on 15.6422 deg it rolls" in err
+    assert "front axle downhill: rolls on slopes above 14.6061 deg: on the given 15.6422 deg it rolls" in err
+    assert "rear axle downhill: rolls on slopes above 14.6061 deg: on the given 15.6422 deg it rolls" in err
 
 
 def test_force_at_the_lever_holds_on_its_slope(run, truck):

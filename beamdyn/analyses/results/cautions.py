@@ -47,9 +47,9 @@ def describe_choice(result: Result) -> list[str]:
 
 
 def describe_left_out(result: Result) -> list[str]:
-    """Return the sentence on neglected effects, for tables that do not list them.
+    """Return the sentence on neglected effects, for results whose tables do not list these effects.
 
-    The sentence is empty if the result has no model error.
+    The list has this one sentence; it is empty if no model error is stated for the result.
     """
     if not isinstance(result, StatesModelError) or not result.judged_value:
         return []

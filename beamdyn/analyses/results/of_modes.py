@@ -29,8 +29,10 @@ Cell: TypeAlias = "str | Text"  # type of a table cell: plain or styled text
 _MOST_ROWS = 16
 _ROUNDING = 1e-9  # relative model error below which it counts as a rounding error
 _CRITICAL_DIGITS = 12  # largest number of digits of a critical speed
-_FEW = 4  # largest number of modes in a table over speed whose frequencies have `_DIGITS` digits
-# Largest number of digits of a frequency in a table over speed: of up to `_FEW` modes, and of more modes.
+_FEW = (
+    4  # largest number of modes with which a table over speed shows frequencies with up to `_DIGITS` digits
+)
+# Largest number of digits of a frequency in a table over speed: with at most `_FEW` modes, and with more.
 _DIGITS, _DIGITS_OF_MANY = 10, 7
 _AXES = "b1", "b2", "b3"  # axes along the beam at rest, in the bending direction, and across
 

@@ -146,7 +146,11 @@ def _rows(
 
 
 def sensitivities_csv(result: bd.Sensitivities) -> Columns:
-    """Make columns with one row per input and result: values in SI units, derivative, relative change."""
+    """Make columns with one row per input and result, all values in SI units.
+
+    They include the derivative of the result with respect to the input, its error, and the relative change of
+    the result per relative change of the input.
+    """
     rows = []
     for k, each in enumerate(result.inputs):
         columns = (result.answers, result.value, result.derivative[k], result.error[k], result.relative[k])
@@ -285,7 +289,7 @@ def _margins(result: bd.Campbell) -> Iterator[Columns]:
             Column("frequency", attributes(found, "frequency"), "Hz"),
             Column("nearest line", attributes(found, "line.name")),
             Column("margin", (), cells=sizes),
-            title="Margins: frequency of the nearest line divided by the natural frequency, minus 1",
+            title="Margins: frequency of the nearest line of excitation / natural frequency, minus 1",
         )
 
 
@@ -299,7 +303,7 @@ def _bounds(result: bd.Campbell) -> Iterator[Columns]:
         known = (low > 0) & (low <= high)
         yield Columns(
             _scenes(result, [label for label, _, _ in each]),
-            Column("mode", [_name_below(result, *one) for one in each]),
+            Column("mode", [_mode_at_bound(result, *one) for one in each]),
             Column("at least", (), "Hz", cells=np.where(known, [*map(lower_bound, low)], "-").tolist()),
             Column("at most", high, "Hz", form=upper_bound),
             Column("relative width", (), cells=np.where(known, np.char.mod("%.0e", width), "-").tolist()),
@@ -307,10 +311,11 @@ def _bounds(result: bd.Campbell) -> Iterator[Columns]:
         )
 
 
-def _name_below(result: bd.Campbell, label: str, speed: float, high: float) -> str:
-    """Return the name of the mode whose frequency at a speed is close to the upper bound `high` [Hz].
+def _mode_at_bound(result: bd.Campbell, label: str, speed: float, high: float) -> str:
+    """Return the name of the mode whose frequency is nearest to a guaranteed upper bound `high` [Hz].
 
-    The mode is one of the scene with the name `label`; the result is "-" if none is close.
+    The modes are those of the scene named `label`, at the computed speed nearest to `speed` [rad/s].  Return
+    "-" if no frequency is within 0.1 % of the bound.
     """
     i = result.labels.index(label)
     locus = result.loci[i]

@@ -157,7 +157,11 @@ def _inputs(result: Spread) -> Iterator[Group]:
 
 
 def _note(result: Spread) -> str:
-    """Return the note on the number of designs, the digits, and the sources of slopes and worst cases."""
+    """Return the note under the tables.
+
+    It states how many designs were computed, that numbers have only the digits that their errors support, and
+    from which designs or derivatives slopes and worst cases are computed.
+    """
     is_normal = any(isinstance(each.distribution, Normal) for each in result.inputs)
     normal = ", a normal one within three standard deviations" if is_normal else ""
     first, told = result.first_order, _told(result)

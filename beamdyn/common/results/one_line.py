@@ -169,7 +169,7 @@ def rounded_up(value: float) -> str:
 
 
 def states(status: Iterable[Any], usual: Sequence[str]) -> str:
-    """Count each status that is not the usual one, such as "2 divergence"; empty if there is none."""
+    """Count each status that is not among the `usual` ones, such as "2 divergence"; "" if there is none."""
     names, counts = np.unique([str(s).partition(":")[0] for s in np.ravel([*status])], return_counts=True)
     others = [f"{c} {n}" for n, c in zip(names.tolist(), counts.tolist(), strict=True) if n not in usual]
     return ", ".join(others)

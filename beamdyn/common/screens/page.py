@@ -395,7 +395,8 @@ class Page:
     def recall(self, stored: Mapping[str, Any]) -> None:
         """Restore the data stored in the browser, and store every change from now on.
 
-        A form that already shows its design is not changed.
+        Texts that the user has already changed are kept.  A form is built again only if restoring changed one
+        of its texts.
         """
         self.header.show_look(stored.get("look") or "")
         self._be_narrow(stored.get("narrow") is True)

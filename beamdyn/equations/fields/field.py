@@ -79,7 +79,8 @@ class Deflection:
     Q, Q_across : ndarray, shape (n,)
         Loads under a unit angular acceleration in the plane of the deflection, and in the other plane [kg m].
     direction : int
-        0 for deflection in the direction of the bending angle, 1 for the perpendicular direction.
+        Direction of the deflection: 0 for the one that the mount's bending angle gives, 1 for the one that is
+        perpendicular to it and to the beam.
     """
 
     space: Functions

@@ -394,7 +394,11 @@ class Torsion(SectionField):
 
 
 class Camber(SectionField):
-    """Camber of a strip: deflections that are even across its width, without the mean."""
+    """Camber of a strip: the bending of its cross-sections.
+
+    Its deflection is symmetric about the middle of the width.  The mean over the width belongs to bending,
+    and is not a part of camber.
+    """
 
     name = "camber"
     requires: ClassVar[Mapping[str, object]] = {"camber": True}

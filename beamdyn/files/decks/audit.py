@@ -54,7 +54,11 @@ class ModePolynomial:
     frequency: float
 
     def lines(self) -> list[str]:
-        """Return lines with the coefficients, as in blade files of the wind turbine program ElastoDyn."""
+        """Return lines with the coefficients, as in blade files of the wind turbine program ElastoDyn.
+
+        A line has a coefficient, ElastoDyn's name of the shape with the power of x in brackets, and, after a
+        hyphen, a remark such as "Flap mode 1, coeff of x^2".
+        """
         name, said = (
             SHAPE_NAMES[self.mode],
             f"{self.mode.split()[0].capitalize()} mode {self.mode.split()[1]}",

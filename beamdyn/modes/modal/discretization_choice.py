@@ -34,10 +34,12 @@ PLATE_TARGET = 1e-4  # smallest target for a strip as a plate, whose convergence
 _MOST_SEGMENTS = 200  # largest number of segments of a beam between its stations and breakpoints
 # Largest number of Ritz functions on all segments together: their eigenproblem takes about a second.
 _MOST_IN_ALL = 1000
-# Largest number of segments with which polynomials on each segment need fewer functions than bending moments
-# that are polynomials along the whole beam.
+# Largest number of segments of a beam for which trial functions that are polynomials on each segment are
+# chosen.  With more segments, fewer functions suffice if their bending moments are polynomials along the
+# whole beam.
 _FEW_SEGMENTS = 6
-_MANY_ON_EACH = 2  # modes per segment above which polynomials on segments need fewer functions than moments
+# Number of modes per segment above which polynomials on each segment are chosen for more segments, too.
+_MANY_ON_EACH = 2
 # Number of functions of the basis "moments" in each direction, minus the number of modes: a constant, the
 # number added per digit of accuracy (both found on published blades), and the smallest sum of the two.  With
 # fewer functions, the stated error of a mode may be too small.  Twisted sections need fewer, because a moment

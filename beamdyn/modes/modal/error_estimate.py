@@ -23,7 +23,10 @@ UNRESOLVED = 0.3  # relative error above which a comparison of two models gives 
 # an order of convergence above 2; the one assumed if it is unknown; the largest for which an error is
 # estimated.
 LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
-_HALVED = 0.7  # ratio of the sizes of two meshes above which they do not show the order of convergence
+# Largest ratio of the numbers of unknowns of a mesh and of the next finer one for which the finer mesh counts
+# as refined everywhere, so that their difference shows the order of convergence (1/2 if all elements are
+# halved).
+_HALVED = 0.7
 _OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding error of stiffness entries
 # Ratio of the difference between the two coarser meshes to the smallest stated error, as the difference
 # between the two finer ones may be small by chance.
@@ -104,14 +107,14 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     InvalidValue
         If the model has fewer functions than modes.
     """
-    if model.solver.size < modes:  # some moment functions may be linear combinations of others
+    if model.solver.size < modes:  # functions of the basis "moments" may be linearly dependent
         bound = f"{model.discretization} has {model.solver.size} functions for this beam"
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
     stated = np.full((len(speeds), modes), np.inf)
-    compared = coarse.shape[1]  # there may be fewer independent moment functions than modes
+    compared = coarse.shape[1]  # the coarser basis may have fewer linearly independent functions
     if not compared:
         return EstimatedModes(model, fine, stated)
     s = fine.eigenvalue[:, :compared]

@@ -49,12 +49,12 @@ from beamdyn.scene.scene import Scene
 # Reasons why the change by large deflection is not known; those in `_REFUSED` are listed by the name of the
 # field in the error that is raised if large deflection is added.
 _TWO_PLANES = "not estimated for two planes, where modes may cross"
-_OF_BENDING = "computed only for bending modes"
+_OF_BENDING = "its effect is computed only for bending modes"
 _HINGED = "a beam on a hinge has no unique equilibrium from which it could bend"
 _REFUSED = {
-    "mount.bending_angle": "computed only if the bending angle is a multiple of 90 deg",
-    "mount.precone": "computed only without precone",
-    "physics.large_deflection": "computed here only for one plane of bending",
+    "mount.bending_angle": "its effect is computed only if the mount's bending angle is a multiple of 90 deg",
+    "mount.precone": "its effect is computed only without precone",
+    "physics.large_deflection": "its effect is computed here only for one plane of bending",
 }
 EXCLUDED = _TWO_PLANES, _HINGED, *_REFUSED.values()
 _NO_CRITICAL_SPEED = "the rotation bends the beam at every speed: it does not buckle"
@@ -152,7 +152,10 @@ def _shifted(equations: Equations, speed: float, s: np.ndarray, v: np.ndarray) -
 
 
 def _say_reversal(s: np.ndarray, shifted: np.ndarray) -> str:
-    """State whether an effect makes a vibrating mode diverge, or a diverging one vibrate; or empty."""
+    """State that an effect makes a vibrating mode diverge or a diverging one vibrate, or return "" if not.
+
+    The eigenvalues are `s` without the effect, and `shifted` with it.
+    """
     if (vibrate(s) & _diverge(shifted)).any():
         return "with it a mode diverges that vibrates here"
     return "with it a mode vibrates that diverges here" if (_diverge(s) & vibrate(shifted)).any() else ""

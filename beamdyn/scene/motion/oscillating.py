@@ -27,7 +27,7 @@ from beamdyn.scene.motion.rotations import Rotation, TurningMotion
 if TYPE_CHECKING:
     from scipy.interpolate import CubicSpline
 
-_NEVER_STEADY = "pulsates, and has no steady state; simulate it, or compute its stability"
+_NEVER_STEADY = "pulsates, so that it has no steady state; simulate this motion, or compute its stability"
 _AXES = ("along_n1", "along_n2", "along_n3")
 
 

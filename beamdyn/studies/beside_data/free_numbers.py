@@ -130,7 +130,7 @@ def free_numbers(scene: Scene, free: Mapping[str, Bounds | None]) -> tuple[FreeN
         raise InvalidValue("free", free, bound, 'such as {"beam.thickness": None}')
     if speed := next((path for path in free if isinstance(path, str) and is_speed(path)), ""):
         bound = "a speed is given by the data, and cannot be an unknown number"
-        raise InvalidValue("free", speed, bound, "leave it out, and give the data with their speeds")
+        raise InvalidValue("free", speed, bound, "remove the speed from `free`, and give it with the data")
     paths = [check_path("free", path) for path in free]
     made = numbers_of(opened(scene, paths), paths, "free")
     return tuple(_free(scene, number, free[number.name]) for number in made)

@@ -267,7 +267,10 @@ def margins_in_range(
     operating: tuple[float, float],
     crossings: Sequence[LineCrossing],
 ) -> Iterator[Margin]:
-    """Yield the smallest margin of each mode over an operating range [rad/s]; 0 if a line crosses it."""
+    """Yield each mode's smallest margin from a line of excitation over a range of operating speeds [rad/s].
+
+    The margin is 0 if a line crosses the mode's frequency within the range.
+    """
     low, high = operating
     inside = np.flatnonzero((locus.speeds >= low) & (locus.speeds <= high))
     crossed = {c.mode: c for c in reversed(crossings) if low <= c.speed <= high}

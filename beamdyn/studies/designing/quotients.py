@@ -44,7 +44,7 @@ _WIDTH = "beam.width", f"{SCALE}width"
 _TIP_MASS, _TIP_INERTIA, _LENGTH = {"beam.tip.mass": -1}, {"beam.tip.inertia": -1}, {"beam.length": -1}
 _NO_EFFECT = dict.fromkeys(("mount.radius", "mount.setting_angle", "mount.bending_angle"), 0)
 _FAR = 1.5  # ratio R / L above which a longer beam buckles at a lower speed: see `_of_buckling`
-_ROUNDING = 4 * np.finfo(float).eps  # relative rounding error of distances
+_ROUNDING = 4 * np.finfo(float).eps  # relative rounding error of the root's distance from the axis
 
 
 def ways(scene: Scene, what: str) -> dict[str, int]:

@@ -32,10 +32,12 @@ from beamdyn.studies.study_result import Study
 
 MOST_SOLVES = 60  # largest number of designs that a search computes
 _EXACT = 1e-10  # relative miss below which a target is met, if the error of the result is not larger
-_STEP = 1e-5  # step of differences within a search, as a fraction of the range of a number
-DIFFERENCE = 1e-3  # step of the differences for the derivatives of results, as a fraction of a range
-_CLOSE = 1e-13  # interval to which a root is bracketed, as a fraction of a range
-_AT_END = 1e-9  # distance from a bound within which a minimization is at the bound, as a fraction of a range
+_STEP = 1e-5  # step of differences within a search, as a fraction of the range of a free number
+DIFFERENCE = 1e-3  # step of differences for the derivatives of results, as a fraction of a number's range
+_CLOSE = 1e-13  # interval to which a root is bracketed, as a fraction of the range of a number
+# Distance from a bound within which a minimum counts as being at the bound, as a fraction of a number's
+# range.
+_AT_END = 1e-9
 _SCANNED, _SPREAD = 9, 4  # number of first designs: for a single free number, and for each of several numbers
 _ROUNDING = 4 * np.finfo(float).eps
 _FLAT = 1e-12  # change of the objective below which a minimization ends

@@ -247,12 +247,15 @@ def _cover(alpha: float, most: int) -> tuple[int, np.ndarray]:
         if count == _PERIODS:
             break
         count = min(2 * count, _PERIODS)
-    bound = "the phase of one of its rates does not cover the circle in 4096 periods of the other"
+    bound = "the slower phase does not cover the circle in 4096 periods of the faster phase"
     raise InvalidValue("scene.motion", alpha / (2 * math.pi), bound, "take nearby rates with a common period")
 
 
 def _over_period(system: ModalSystem, T: float, steps: int, k: int) -> np.ndarray:
-    """Compute the map of the state (displacements, velocities) over the k-th period of the faster phase."""
+    """Compute the map of the state (displacements, velocities) over the period from k T to (k + 1) T.
+
+    T is the period of the faster one of the two phases of the motion [s].
+    """
     starts = T * (k + np.arange(steps) / steps)
     maps = step_maps(system, starts, T / steps, tableau(_STAGES)).step[:, :, 1:]
     return reduce(lambda before, step: step @ before, maps)

@@ -90,10 +90,11 @@ class OnGrid:
 
     Parameters
     ----------
-    value : ndarray, shape (first, second, ...)
-        The function at each pair of values.
+    value : ndarray, shape (A, B, k)
+        The function, an array (k,), at each pair of A values of the first and B of the second number.
     error : float
-        Estimated interpolation error of the entries to which the tolerance applies; 0 without interpolation.
+        Estimated interpolation error of those of the k entries that were interpolated to a tolerance
+        (argument `entries` of `interpolate_on_grid`); 0 without interpolation.
     samples : int
         Number of pairs at which the function was computed.
     """

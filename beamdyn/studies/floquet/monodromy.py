@@ -121,7 +121,8 @@ _FEWEST = 12  # smallest number of steps in a period of the motion, which resolv
 COARSER_STEPS = 2 / 3  # ratio of the number of steps of the second solution to that of the first
 # Assumed ratio of the errors of the two solutions; the ratio tends to (3/2)^16 = 650 for small steps.
 _EXCESS = 100.0
-# Ratio of a mode's angular frequency at rest to 2 pi/period, below which it counts as 0 in scaling states.
+# In states (w q, q'), w is the angular frequency of a mode at rest, but 2 pi/period if that frequency is at
+# most this fraction of 2 pi/period.
 _SLOWEST = 1e-3
 _SAMPLES = 64  # number of times in a period at which the stiffness is evaluated to find its maximum
 _ROUNDING = 4 * np.finfo(float).eps  # rounding error of a step, relative to the size of its matrix

@@ -2,15 +2,15 @@
 
 To first order, an error d of a matrix moves a multiplier by at most k d.  Here k is its condition number: the
 product of the norms of its left and right eigenvector over their inner product.  If two multipliers meet, k
-is unbounded, but k times their distance is bounded: the two are m +- sqrt(s), and an error D of s moves them
-by at most sqrt(D).
+is unbounded, but k times their distance is bounded: the two are a +- sqrt(s) with their mean a, and an error
+D of s moves them by at most sqrt(D).
 
-Undamped motion preserves an antisymmetric form, so that multipliers come in pairs m, 1 / conj(m).  A
+Undamped motion preserves an antisymmetric form, so that multipliers come in pairs z, 1 / conj(z).  A
 multiplier near, but off, the unit circle would have its partner equally close on the other side.  One that is
 further from all others than the errors has no such partner, and thus is on the circle.  If several meet, they
 stay on the circle if the form has the same sign on all of their vectors (Krein).
 
-In shapes of arrays, P counts matrices, and m multipliers of each.
+In shapes of arrays, P is the number of matrices, and m the number of multipliers of each.
 """
 
 from __future__ import annotations
@@ -40,7 +40,8 @@ class Multipliers:
     error : ndarray, shape (P, multipliers)
         Estimated errors of the multipliers.
     sign : ndarray, shape (P, multipliers), or None
-        Krein signs, of the form of undamped motion on the eigenvectors: 1 or -1; 0 if not known, as for all
+        Krein sign of each multiplier: the sign, 1 or -1, of i x^* J x with its eigenvector x and the
+        antisymmetric matrix J of the form that undamped motion preserves.  It is 0 if not known, and for
         multipliers off the unit circle.  None with damping.
     period : ndarray, shape (P,)
         Periods of the motions [s].

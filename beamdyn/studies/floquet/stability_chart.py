@@ -117,7 +117,7 @@ class StabilityChart(SceneResult, JudgedByRepeating):
 
     @property
     def _few(self) -> list[np.ndarray]:
-        """Indices of those values of each number at which the model error is computed."""
+        """For each of the two inputs, the indices of the values at which the model error is computed."""
         return [evenly_spread(len(each.values), _JUDGED) for each in self.inputs]
 
     def judged(self, found: StabilityChart) -> np.ndarray:
