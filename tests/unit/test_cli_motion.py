@@ -268,7 +268,7 @@ BAD = {
     "bare speeds": (("steady", SCENE, "--speeds", "1:2:3"), ("1:2:3", "unit")),
     "sweep without motion": (("sweep", STILL, *SWEEP[2:]), ("motion: missing", "[motion]")),
     "no workers": ((*SWEEP, "--workers", "0"), ("workers = 0", "1 or more")),
-    "foreign store": ((*SWEEP, "--store", str(ROOT)), ("store", "something else")),
+    "foreign store": ((*SWEEP, "--store", str(ROOT)), ("store", "something other than a beamdyn sweep")),
     "file as store": ((*SWEEP, "--store", SCENE), ("store", "is a file")),
     "no scheduler": (
         (*SWEEP, "--scheduler", "nowhere"),
