@@ -147,7 +147,7 @@ def backbone(
         raise InvalidValue("mode", mode, bound, 'another speed or Physics(branch="bent")')
     found = FreeVibration.of(solution.model, float(speeds[0]), mode)
     k, coarse, coarsest = found.coefficient(SMALL / 2), *_coarser_coefficients(solution.model, speeds, mode)
-    is_compared = solution.model.coarser.solver.size < solution.model.solver.size
+    is_compared = solution.model.coarser.solver.size < solution.model.solver.size and np.isfinite(coarse)
     before = coarse - coarsest if abs(k - coarse) < _STEADY * abs(k) else np.nan
     of_basis = float(error_of_finest(THREE_DISCRETIZATIONS, k - coarse, before, _ROUNDED * abs(k)))
     return Backbone(
@@ -163,16 +163,13 @@ def backbone(
 
 
 def _coarser_coefficients(model: Model, speeds: np.ndarray, mode: int) -> tuple[float, float]:
-    """Compute the coefficient with the two coarser models; nan if the coarsest one has no such mode.
-
-    The finer of these models has the mode, because the frequency's error was estimated from it.
-    """
-    coarse, coarsest = model.coarser, model.coarser.coarser
-    found = FreeVibration.of(coarse, float(speeds[0]), mode).coefficient(SMALL / 2)
-    with suppress(ArithmeticError, np.linalg.LinAlgError):  # the coarsest model may have no equilibrium
-        if coarsest.solver.size >= mode:
-            return found, FreeVibration.of(coarsest, float(speeds[0]), mode).coefficient(SMALL / 2)
-    return found, np.nan
+    """Compute the coefficient with the two coarser models; nan if a model has no such mode or equilibrium."""
+    found = [np.nan, np.nan]
+    for k, coarser in enumerate((model.coarser, model.coarser.coarser)):
+        with suppress(ArithmeticError, np.linalg.LinAlgError):
+            if coarser.solver.size >= mode:
+                found[k] = FreeVibration.of(coarser, float(speeds[0]), mode).coefficient(SMALL / 2)
+    return found[0], found[1]
 
 
 # Ratio of the tip amplitude to the length.  The frequency change is computed at half this amplitude, and the

@@ -155,7 +155,8 @@ class Locus(TellsKinds, SceneResult, StatesModelError):
 
         Bending in the directions that are drawn solid and dashed is 0 and 1; torsion and camber are 2 and 3.
         """
-        motions = np.where(self.plane_share[:, :, first_drawn(self.scene)] >= 0.5, 0, 1)
+        solid = first_drawn(self.scene) if self.scene.physics.planes == 2 else 0
+        motions = np.where(self.plane_share[:, :, solid] >= 0.5, 0, 1)
         for number, kind in enumerate(OTHER_KINDS, 2):
             motions[self.kind == kind] = number
         return motions

@@ -161,8 +161,8 @@ def setting_angle_limits(
     tangential = replace(scene, mount=replace(scene.mount, setting_angle=np.pi / 2))
     model = model_to_tolerance(tangential, discretization, speeds, 1, tolerance)
     first, second = _limits(model, top_speed)
-    # At an infinite top speed the limits are defined for the given basis only, so that their only error is
-    # rounding.
+    # At an infinite top speed the limits depend on the basis, which has to be given.  They are limits of that
+    # model, exact within rounding.
     error, coarse = _ROUNDING, model.coarser
     if bounded:
         of_coarse, of_coarsest = (np.array(_limits(each, top_speed)) for each in (coarse, coarse.coarser))

@@ -49,6 +49,7 @@ _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
 # Largest length near the root over which the clamp stiffens bending, as a fraction of the length of the beam.
 _LONGEST_REACH = 0.7
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
+_UNCHANGED = 1e-12  # distance of a factor from 1 that is no change: rounding of a product may cause it
 _ZETA_5 = 1.036927755143369926  # 1 + 1/2^5 + 1/3^5 + ...; scipy.special is slow to import
 SIDES = {"width": "m", "thickness": "m"}
 SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
@@ -113,7 +114,10 @@ class Rectangle:
         """Multiply a side of the section, or one of its `properties`, by a factor."""
         if name in SIDES:
             return replace(self, **{name: getattr(self, name).scaled(factor)})
-        return replace(self, factors=(*self.factors, (name, factor)))
+        product = factor * dict(self.factors).get(name, 1.0)
+        others = tuple(each for each in self.factors if each[0] != name)
+        changed = () if abs(product - 1) < _UNCHANGED else ((name, product),)
+        return replace(self, factors=others + changed)
 
     @cached_property
     def torsion_factor(self) -> Profile:

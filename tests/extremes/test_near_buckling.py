@@ -85,6 +85,26 @@ def test_an_equilibrium_that_a_coarser_basis_lacks_has_no_known_error() -> None:
     assert np.isfinite(found.tip).all() and found.error == np.inf
 
 
+@pytest.mark.parametrize("speeds", [3, 200])
+def test_errors_are_known_at_the_speeds_at_which_a_coarser_basis_buckles(speeds: int) -> None:
+    scene, critical = _stepped()
+    locus = bd.frequency_locus(scene, critical * np.linspace(1 + 3e-5, 1.1, speeds), 1, bd.Ritz(5))
+    assert locus.error[0, 0] == np.inf and locus.error[-1, 0] < 0.1
+
+
+def test_a_coarsest_mesh_that_does_not_buckle_is_no_refusal() -> None:
+    scene = replace(SCENE, mount=bd.Mount(0.05), physics=bd.Physics(large_deflection=True, branch="bent"))
+    speed = 1.0002 * float(bd.critical_speed(bd.Scene(scene.beam, scene.mount)))
+    mesh, exact = (bd.natural_modes(scene, speed, 1, each) for each in (bd.Fem(8), "ritz"))
+    assert abs(mesh.frequency[0] - exact.frequency[0]) <= mesh.error[0] * mesh.frequency[0]
+
+
+def test_a_backbone_that_a_coarser_basis_lacks_has_no_known_error() -> None:
+    scene, critical = _stepped()
+    found = bd.backbone(scene, critical * (1 + 3e-5), discretization=bd.Ritz(5))
+    assert np.isfinite(found.coefficient) and found.error == np.inf
+
+
 def test_a_speed_just_below_the_critical_one_has_no_bent_equilibrium() -> None:
     scene, critical = _stepped()
     with pytest.raises(bd.NoEquilibrium, match="no equilibrium beside"):

@@ -128,7 +128,7 @@ def test_torsional_constant_of_rectangles():
 
 # The energy by direct integration ------------------------------------------------------------------
 
-TAPERED, DIVIDED = (  # with a breakpoint, functions of torsion are those of widths with kinks
+TAPERED, DIVIDED = (  # the second serves for the functions of torsion of widths with kinks
     bd.Beam.rectangular(
         0.1,
         Polynomial([0.03, -0.02, 0.006]),
@@ -189,9 +189,11 @@ def sample(scene, w):
 
 
 @pytest.fixture(params=[(TAPERED, 0, 0.0), (DIVIDED, 1, 0.0), (TAPERED, 2, 0.4)])
-def tapered(request, thin):
+def tapered(request, thin, monkeypatch):
     """A tapered strip with a tip body at an oblique bending angle, a random deflection, and its samples."""
     beam, seed, precone = request.param
+    if beam is DIVIDED:  # any width counts as one with kinks
+        monkeypatch.setattr("beamdyn.equations.fields.strip._SMOOTH", -1.0)
     scene = bd.Scene(beam, bd.Mount(0.2, OUT, 0.7, precone=precone), physics=PLATE)
     equations = assemble_equations(scene, BASIS)
     q = np.random.default_rng(seed).normal(size=equations.size) * 1e-3
@@ -391,3 +393,30 @@ def test_frequencies_with_automatic_physics_do_not_jump_where_a_factor_is_one():
     below, at, above = study.value.ravel()
     assert at == pytest.approx((below + above) / 2, rel=1e-9)  # a smooth function: a second difference
     assert above / below - 1 == pytest.approx(1e-6, rel=0.01)  # half of the stiffness' change
+
+
+@pytest.mark.parametrize(
+    "width", [lambda x: 0.03 * np.exp(-0.3 * x), bd.Table([0, 0.5, 1], [0.03, 0.018, 0.006])]
+)
+def test_smooth_widths_however_they_are_given(width):
+    """An exponential one has a constant relative slope; stations of a straight taper are no kinks."""
+    strip = bd.Beam.rectangular(0.5, width, 0.0025, **STEEL, poissons_ratio=0.3)
+    found = bd.natural_modes(bd.Scene(strip, bd.Mount(0.1, OUT), physics=bd.Physics(torsion=True)), 10.0, 12)
+    assert (found.error < 1e-4).all()
+
+
+def test_a_straight_beam_with_camber_heeds_no_branch():
+    strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, **STEEL, poissons_ratio=0.3)
+    of_branch, plain = (
+        bd.natural_modes(bd.Scene(strip, physics=bd.Physics(camber=True, branch=branch)), modes=1)
+        for branch in ("bent", "straight")
+    )
+    assert of_branch.frequency == plain.frequency
+
+
+def test_factors_that_cancel_leave_the_rectangle_as_it_is():
+    strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, **STEEL, poissons_ratio=0.3)
+    scene = bd.Scene(strip)
+    for factor in (1.1, 1 / 1.1):
+        scene = with_numbers(scene, {"beam.scale.bending_stiffness": factor})
+    assert scene.beam.section == strip.section

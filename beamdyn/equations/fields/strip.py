@@ -24,6 +24,9 @@ from beamdyn.scene.scene import Scene
 # Orders of the derivatives of the deflection along and across the strip.
 _ORDERS = (0, 0), (0, 1), (0, 2), (1, 0), (2, 0), (1, 1)
 _ZERO = 1e-12  # averages over the width below this fraction of the largest count as 0: they are 0 by symmetry
+# Step of the width, or of its slope over x/L, relative to the largest width, above which it counts as a jump
+# or a kink.  Beside this limit the functions of either kind serve as well.
+_SMOOTH = 1e-8
 
 
 class Derivative(NamedTuple):
@@ -113,7 +116,10 @@ def over_fixed(width: Profile, number: int) -> Profile:
 
     That is the local width, but for odd functions the width at the tip where the width has kinks or jumps.
     """
-    is_fixed = number % 2 and len(width.breakpoints) > 2
+    left, right = width.end_values()
+    slopes = width.derivative().end_values()
+    steps = np.abs(np.concatenate([left[1:] - right[:-1], slopes[0][1:] - slopes[1][:-1]]))
+    is_fixed = number % 2 and steps.max(initial=0.0) > _SMOOTH * np.abs(right).max()
     return width.scaled(1 / float(width.end_values()[1][-1])) if is_fixed else ONE
 
 
@@ -152,9 +158,8 @@ def _inverse(b: Profile) -> Profile:
 @lru_cache(maxsize=64)
 def _relative_slopes(b: Profile, length: float) -> tuple[Profile, Profile]:
     """Compute the relative slope b'/b of the width b [1/m] and its derivative [1/m2], over x/L."""
-    first, second = b.derivative(), b.derivative().derivative()
-    beta, change = combine(lambda b, d, dd: np.stack([d / b, dd / b - (d / b) ** 2]), b, first, second)
-    return beta.scaled(1 / length), change.scaled(1 / length**2)
+    beta = combine(lambda b, d: (d / b)[None], b, b.derivative())[0].scaled(1 / length)
+    return beta, beta.derivative().scaled(1 / length)
 
 
 @dataclass(frozen=True)

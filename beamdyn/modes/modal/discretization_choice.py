@@ -184,7 +184,7 @@ def _choose(
         return next(models), None
     # A model has fewer modes than functions if some functions are linear combinations of others.
     first = next(m for m in models if m.solver.size >= modes or refine_model(m) is None)
-    if scene.physics.branch == "bent":
+    if scene.physics.large_deflection and scene.physics.branch == "bent":
         first = _refine_until_buckled(first, float(ends[0]))
     reached = within_reach(first.discretization, target)
     at_ends = refine(

@@ -197,15 +197,7 @@ class DeflectedSolver(Solver):
         squared, is_lost = find_loss_of_stability(self.load)
         return math.sqrt(squared) if is_lost else np.inf
 
-    def eigenvalues(self, speeds: np.ndarray, count: int) -> np.ndarray:
-        """Compute eigenvalues as `Eigensolver.eigenvalues` does.
-
-        There are none (no columns) if another discretization's equilibrium does not exist in this one, which
-        buckles only at a higher speed.
-        """
-        with suppress(*([] if self.guide is None else [NoEquilibrium])):
-            return Eigensolver.eigenvalues(self, speeds, count)
-        return np.empty((len(speeds), 0))
+    eigenvalues = Eigensolver.eigenvalues
 
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """Compute the `count` lowest modes at each speed [rad/s]; each speed is solved once.

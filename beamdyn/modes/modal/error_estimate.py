@@ -115,8 +115,6 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
     stated = np.full((len(speeds), modes), np.inf)
     compared = coarse.shape[1]  # the coarser basis may have fewer linearly independent functions
-    if not compared:
-        return EstimatedModes(model, fine, stated)
     s = fine.eigenvalue[:, :compared]
     squared, of_coarse = s**2, coarse**2
     distance = squared - of_coarse
@@ -124,7 +122,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     if order is not None:  # Richardson extrapolation removes the leading term of the error
         # If one value is 0 within rounding, the distance counts as 0.
         within_rounding = (fine.eigenvalue[:, :compared] == 0) | (coarse == 0)
-        squared = squared + np.where(within_rounding, 0.0, distance / (2**order - 1))
+        squared = squared + np.where(within_rounding | np.isnan(coarse), 0.0, distance / (2**order - 1))
         extrapolated = np.concatenate([_root(squared, s), fine.eigenvalue[:, compared:]], axis=1)
         fine = Eigen(extrapolated, fine.vector, fine.rounding)
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -170,15 +170,23 @@ def solve_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> Ei
 
 
 def eigenvalues_over_speeds(solver: Eigensolver, speeds: np.ndarray, count: int) -> np.ndarray:
-    """Compute the eigenvalues of the `count` lowest modes at each speed: (speeds, count)."""
-    if len(speeds) <= _FEW:
-        return solver.eigenvalues(speeds, count)
+    """Compute the eigenvalues of the `count` lowest modes at each speed: (speeds, count).
+
+    They are nan at speeds at which a beam with large deflection has no equilibrium.
+    """
 
     def solve(some: np.ndarray) -> Eigen:
         found = solver.solve(some, count)
         return Eigen(found.eigenvalue, found.vector[:, :0], found.rounding)
 
-    return (solve(speeds) if solver.pencil.C.any() else _solve_over(solver, speeds, solve)).eigenvalue
+    try:
+        if len(speeds) <= _FEW:
+            return solver.eigenvalues(speeds, count)
+        return (solve(speeds) if solver.pencil.C.any() else _solve_over(solver, speeds, solve)).eigenvalue
+    except ArithmeticError:  # `NoEquilibrium`, whose module few scenes need
+        if len(speeds) == 1:
+            return np.full((1, min(count, solver.size)), np.nan)
+        return np.concatenate([eigenvalues_over_speeds(solver, each[None], count) for each in speeds])
 
 
 def _solve_over(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> Eigen:
