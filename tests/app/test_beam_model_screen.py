@@ -66,7 +66,9 @@ def test_automatic_physics_is_chosen_on_the_screen_and_says_what_it_added():
     found = work.answered[FREQUENCIES.name]
     assert found.answer.locus.frequency[-1, 0] == pytest.approx(TRUE, abs=0.005)
     page = written(report_of(work, "Mine"))
-    assert page.count("physics &quot;auto&quot;, tolerance 0.001: large deflection (") == 2  # loci and resonances
+    assert (
+        page.count("physics &quot;auto&quot;, tolerance 0.001: large deflection (") == 2
+    )  # loci and resonances
     assert "[physics] auto = true" in page
     assert not any("left out, changes" in note for note in found.notes)
 

@@ -387,4 +387,4 @@ def test_procedure_gathers_warnings():
     )
     assert len(found.warnings) == 3
     assert "never stops" in found.warnings[0] and "enters the drum" in found.warnings[1]
-    assert "friction" in found.warnings[2] and "or the stop that it comes from" in found.warnings[2]
+    assert "friction" in found.warnings[2] and "or the stop that gives it" in found.warnings[2]
