@@ -233,13 +233,8 @@ class Harvester(FieldsOnly):
             bound = "the beam carries layers already, which these would overlap"
             raise InvalidValue("harvester.start", self.start, bound, "put one set on the bare beam", "m")
         if beam.section is None or beam.section.factors:
-            remedy = Words(RECTANGULAR, " makes one")
-            raise InvalidValue(
-                "harvester",
-                "layers",
-                "they need a beam with the properties of its rectangular section",
-                remedy,
-            )
+            bound = "they need a beam with the properties of its rectangular section"
+            raise InvalidValue("harvester", "layers", bound, Words(RECTANGULAR, " makes one"))
         if beam.is_twisted:
             raise InvalidValue("twist", beam.tip_twist, "a twisted beam carries no layers", "omit one", "rad")
         end, bound = beam.length if math.isinf(self.end) else self.end, "the beam ends at {limit}"
