@@ -23,8 +23,8 @@ from beamdyn.modes.modal.discretization_choice import (
     model_to_tolerance,
     most_modes,
 )
+from beamdyn.modes.modal.distance_across import distance_across
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physics
 from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
 from beamdyn.scene.validity import check_speeds
@@ -317,7 +317,7 @@ def _with_error(
     # The coarser mesh or basis may have as many functions across the width, so that these need a comparison
     # too.
     across = distance_across(
-        model.model, lambda narrow: evaluate(ModelAtSpeed(narrow, model.speed, model.modes)), value
+        model.model, lambda fewer: evaluate(ModelAtSpeed(fewer, model.speed, model.modes)), value
     )
     error = error + BASES_OF_PLATES.factor * across
     truncation, compared = np.zeros(()), [str(coarse.discretization)]

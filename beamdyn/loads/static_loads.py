@@ -24,9 +24,9 @@ from beamdyn.modes.modal.discretization_choice import (
     refine_model,
     warn_of_missed_tolerance,
 )
+from beamdyn.modes.modal.distance_across import distance_across
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
 from beamdyn.modes.modal.model import Model, static_load
-from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_changes import SolvedValues
 from beamdyn.modes.repeated import repeatable
@@ -154,7 +154,7 @@ def static_loads(
     def solved(model: Model) -> _Solved:
         (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
         rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
-        across = distance_across(model, lambda narrow: _solve(narrow, asked, speeds, theta)[0], found)
+        across = distance_across(model, lambda fewer: _solve(fewer, asked, speeds, theta)[0], found)
         distance = np.abs(found - coarse) + across  # at some stations either may be small by chance
         distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
         return _Solved(model, found, BASES_OF_STATIC_LOADS.factor * distance + rounding, tip)

@@ -11,10 +11,10 @@ import numpy as np
 
 from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, SLOW_BASES, refine
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
+from beamdyn.modes.modal.distance_across import distance_across
 from beamdyn.modes.modal.equilibrium import find_loss_of_stability
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
 from beamdyn.modes.modal.model import Model
-from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.scene.scene import Scene
 
 # Number of modes for which the first basis is chosen, so that a basis of half its size usually suffices too.
@@ -105,7 +105,7 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
         before = coarse_softening - half.softening if is_halved(half, coarse.solver) else np.nan
         left = float(extrapolation_error(*np.array([[distance], [before], [noise * softening]]))[0])
         across = distance_across(
-            model, lambda narrow: np.array(narrow.solver.softening), np.array(fine_softening)
+            model, lambda fewer: np.array(fewer.solver.softening), np.array(fine_softening)
         )
         left += BASES_OF_PLATES.factor * float(across)
     error = left / (2 * softening) + noise

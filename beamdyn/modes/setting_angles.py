@@ -19,9 +19,9 @@ from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement, ann
 from beamdyn.common.words import Named, Words
 from beamdyn.equations import effects
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, model_to_tolerance
+from beamdyn.modes.modal.distance_across import distance_across
 from beamdyn.modes.modal.eigenproblem import Solver
 from beamdyn.modes.modal.model import Model, static_load
-from beamdyn.modes.modal.narrower import distance_across
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
@@ -168,7 +168,7 @@ def setting_angle_limits(
         of_coarse, of_coarsest = (np.array(_limits(each, top_speed)) for each in (coarse, coarse.coarser))
         errors = error_of_finest(THREE_DISCRETIZATIONS, (first, second) - of_coarse, of_coarse - of_coarsest)
         limits = np.array([first, second])
-        across = distance_across(model, lambda narrow: np.array(_limits(narrow, top_speed)), limits)
+        across = distance_across(model, lambda fewer: np.array(_limits(fewer, top_speed)), limits)
         error += float(np.nanmax([*(errors + BASES_OF_PLATES.factor * across), 0.0]))
     deflection = np.nan  # ratio of deflection to length, at the second limit
     if bounded and not np.isnan(second):

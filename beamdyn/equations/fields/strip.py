@@ -89,8 +89,8 @@ class WidthFunctions:
             "w_xx": [Derivative(ONE, 2, p)],
             "w_xy": [Derivative(half, 1, dp)],
         }
-        if (ratio := over_fixed(section.width, min(numbers))) is not ONE:
-            self.parts = _parts_over_fixed_width(section.width, ratio, tuple(numbers), eta)
+        if (ratio := argument_ratio(section.width, min(numbers))) is not ONE:
+            self.parts = _parts_argument_ratio_width(section.width, ratio, tuple(numbers), eta)
         elif section.width.degree:  # the width varies: d/dx at constant y is not d/dx at constant eta
             slope, change = _relative_slopes(section.width, length)
             stretched, turned = eta * dp, dp + eta * ddp
@@ -111,10 +111,11 @@ def _polynomials(numbers: tuple[int, ...], points: int) -> tuple[np.ndarray, lis
     return edge, [edge[:, None] * legendre.legval(eta, legendre.legder(series, order)) for order in range(3)]
 
 
-def over_fixed(width: Profile, number: int) -> Profile:
-    """Divide the width by that by which y is divided in functions across of a number k, odd or even.
+def argument_ratio(width: Profile, number: int) -> Profile:
+    """Compute the ratio of the local width to the width b in the argument 2 y/b of functions across.
 
-    That is the local width, but for odd functions the width at the tip where the width has kinks or jumps.
+    The functions have odd or even numbers, such as `number`.  If they are odd and the width has kinks or
+    jumps, b is the width at the tip; else b is the local width, and the ratio is the object `ONE`.
     """
     left, right = width.end_values()
     slopes = width.derivative().end_values()
@@ -123,7 +124,7 @@ def over_fixed(width: Profile, number: int) -> Profile:
     return width.scaled(1 / float(width.end_values()[1][-1])) if is_fixed else ONE
 
 
-def _parts_over_fixed_width(
+def _parts_argument_ratio_width(
     width: Profile, ratio: Profile, numbers: tuple[int, ...], eta: np.ndarray
 ) -> dict[str, list[Derivative]]:
     """Split derivatives of p_k(2 y/tip width) u_k(x) into powers of 2 y/width and of width/tip width."""

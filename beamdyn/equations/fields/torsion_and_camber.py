@@ -68,7 +68,7 @@ from beamdyn.equations.explanations import Condition, Explanation
 from beamdyn.equations.fields.bending_shear_stretch import STRETCHED, Bending, Stretch
 from beamdyn.equations.fields.field import Field, FieldEquations, Load, Term
 from beamdyn.equations.fields.offsets import EXPLANATIONS, Offsets, SectionMotion
-from beamdyn.equations.fields.strip import StackedSpace, Strip, WidthFunctions, over_fixed
+from beamdyn.equations.fields.strip import StackedSpace, Strip, WidthFunctions, argument_ratio
 from beamdyn.equations.fields.transverse import TransverseField, Trial, axis_in_section
 from beamdyn.equations.mass import axial_tension
 from beamdyn.equations.root_motion import Quantity
@@ -251,7 +251,10 @@ class SectionField(Field):
         """Assemble the terms of the plate's energy, with the coupling to bending."""
         strip = Strip(scene, spaces)
         numbers = tuple(self.numbers(spaces.across))
-        fewer, stretch = len(self.numbers(spaces.fewer_across)), over_fixed(strip.section.width, self.first)
+        fewer, stretch = (
+            len(self.numbers(spaces.fewer_across)),
+            argument_ratio(strip.section.width, self.first),
+        )
         space = StackedSpace(spaces.functions(_HELD), numbers, fewer, stretch)
         if not numbers:
             return FieldEquations(space, (), ())

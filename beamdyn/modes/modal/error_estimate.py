@@ -109,7 +109,6 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
-    stated = np.full((len(speeds), modes), np.inf)
     compared = coarse.shape[1]  # the coarser basis may have fewer linearly independent functions
     s = fine.eigenvalue[:, :compared]
     squared, of_coarse = s**2, coarse**2
@@ -141,6 +140,7 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     if not resolved.all():
         resolved &= ~_may_be_passed(squared, distance, resolved)
     resolved &= model.exceeds_coarser
+    stated = np.full((len(speeds), modes), np.inf)
     stated[:, :compared] = np.where(resolved, error, np.inf)
     return EstimatedModes(model, fine, stated)
 
