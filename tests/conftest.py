@@ -1,7 +1,8 @@
 import gc
 import os
+import sys
 from collections import defaultdict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import pytest
 from _pytest.capture import CaptureResult
@@ -67,6 +68,14 @@ def pytest_collection_modifyitems(config, items):
         for i, case in enumerate(cases):
             if is_sampled and i % EVERY != config.getoption("sample"):
                 case.add_marker(pytest.mark.more)
+
+
+@pytest.fixture(autouse=True)
+def close_figures() -> Iterator[None]:
+    """Close the figures a test left open: pyplot warns at the 21st, whichever tests a worker happens to run."""
+    yield
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
 
 
 Finished = Callable[[int, int], CaptureResult[str]]

@@ -289,9 +289,6 @@ def test_example(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.chdir(path.parent)
     names = runpy.run_path(str(path))
-    try:
-        drawn = [pyplot.figure(number) for number in pyplot.get_fignums()]
-        assert drawn and all(ax.has_data() or ax.texts for figure in drawn for ax in figure.axes if ax.axison)
-        CLAIMS[path.stem](names)
-    finally:
-        pyplot.close("all")
+    drawn = [pyplot.figure(number) for number in pyplot.get_fignums()]
+    assert drawn and all(ax.has_data() or ax.texts for figure in drawn for ax in figure.axes if ax.axison)
+    CLAIMS[path.stem](names)

@@ -70,9 +70,6 @@ def test_blocks_of_a_page(
         if part["lines"]:
             shown = " ".join("".join(capsys.readouterr()).split())
             assert [line for line in part["lines"].splitlines() if " ".join(line.split()) not in shown] == []
-    from matplotlib import pyplot
-
-    pyplot.close("all")
 
 
 def test_blocks_that_are_not_run_say_why() -> None:

@@ -26,6 +26,3 @@ def test_blocks_print_what_stands_below_them(capsys: pytest.CaptureFixture[str])
     for code, printed in BLOCKS:
         exec(code, names)
         assert without_errors(capsys.readouterr().out) == without_errors(printed)
-    from matplotlib import pyplot
-
-    pyplot.close("all")

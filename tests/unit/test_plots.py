@@ -185,9 +185,8 @@ def test_new_axes_are_made_only_where_none_are_given():
     before = pyplot.get_fignums()
     plot_locus(SPEEDS, LOCUS, Figure().subplots())
     assert pyplot.get_fignums() == before
-    new = plot_locus(SPEEDS, LOCUS)
+    plot_locus(SPEEDS, LOCUS)
     assert len(pyplot.get_fignums()) == len(before) + 1
-    pyplot.close(new.figure)
 
 
 def test_import_leaves_pyplot_and_meshio_alone():

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib import pyplot
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
@@ -172,7 +171,6 @@ def test_results_are_written_and_drawn(tmp_path) -> None:
     drawn = crossings.plot()
     labels = [text.get_text() for text in (*drawn.get_legend().get_texts(), *drawn.texts)]
     assert {"road +", "road -", "forced", "parametric", "mode 1"} <= set(labels)
-    pyplot.close("all")
 
 
 # Resonance speeds ---------------------------------------------------------------------------------
