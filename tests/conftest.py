@@ -72,7 +72,7 @@ def pytest_collection_modifyitems(config, items):
 
 @pytest.fixture(autouse=True)
 def close_figures() -> Iterator[None]:
-    """Close the figures a test left open: pyplot warns at the 21st, whichever tests a worker happens to run."""
+    """Close figures a test left open: pyplot warns at the 21st, whichever tests a worker happens to run."""
     yield
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close("all")
