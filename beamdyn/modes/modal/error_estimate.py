@@ -75,9 +75,13 @@ class EstimatedModes:
     error: np.ndarray
 
     def meet(self, tolerance: float) -> bool:
-        """Return whether all errors are below the tolerance or at the level of rounding."""
-        rounding = self.eigen.rounding[:, : self.error.shape[1]]
-        return bool((self.error <= np.maximum(tolerance, 3 * rounding)).all())
+        """Return whether each error is below the tolerance or at the level of rounding.
+
+        A value that is 0 within rounding, as at the critical speed, has no relative error that more functions
+        could reduce.
+        """
+        level = 3 * self.eigen.rounding[:, : self.error.shape[1]]
+        return bool((self.error <= np.where(level < UNRESOLVED, np.maximum(tolerance, level), np.inf)).all())
 
 
 def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 0) -> EstimatedModes:

@@ -29,6 +29,9 @@ _SMALLEST_TRIAL = 1e-12
 SPLIT_ROOT = 1e-8
 # Ratio of a squared frequency to the squared speed below which the beam turns freely, within rounding.
 _NEUTRAL = 1e-12
+# Ratio of a squared frequency to its rounding error below which the frequency is 0.  Free rotations reach
+# 1.3: at a limit of 1 the processor would determine whether they are neutral.
+_ZERO_MARGIN = 8.0
 
 
 def remove_shift(
@@ -54,7 +57,7 @@ def remove_shift(
     Returns
     -------
     squared : ndarray, shape (S, modes)
-        Squared frequencies [rad2/s2]; 0 if they are within their rounding error.
+        Squared frequencies [rad2/s2]; 0 if they are not clearly larger than their rounding error.
     rounding : ndarray, shape (S, modes)
         Relative rounding error of the frequencies.
     """
@@ -75,7 +78,7 @@ def remove_shift(
     lost += pencil.shift * (count * BACKWARD + _EPS * condition) ** 2
     difference = squared - pencil.shift
     low = np.abs(difference) < _LOW * pencil.shift
-    removed = np.where(low, np.where(np.abs(quotient) > lost, quotient, 0.0), difference)
+    removed = np.where(low, np.where(np.abs(quotient) > _ZERO_MARGIN * lost, quotient, 0.0), difference)
     nonzero = np.where(removed == 0, 1.0, np.abs(removed))
     return removed, np.where(low, lost / nonzero, rounding * np.abs(squared) / nonzero)
 
