@@ -18,6 +18,7 @@ from functools import cached_property
 import numpy as np
 
 from beamdyn.common.inputs.checks import real_array
+from beamdyn.common.numerics import solve_lower
 from beamdyn.common.results.snapshots import ADDED_LATER
 from beamdyn.equations.circuit import BLOCK, Circuit, Voltage, charge_terms, flux_terms
 from beamdyn.equations.effects import check_direction
@@ -399,6 +400,15 @@ class Equations:
             voltage=voltage,
         )
 
+    def of_unit_stiffness(self) -> Equations:
+        """Transform each field's coordinates to others in which its stiffness at rest, shifted, is the identity.
+
+        Short elements make the stiffness ill-conditioned: the elastic forces of smooth deflections are small
+        differences of large numbers.
+        """
+        K = self.matrices[0]["unity"] + self.shift * self.matrices[2]["unity"]
+        return self.reduced({(name,): _unit_basis(K[place, place]) for name, place in self.blocks.items()})
+
     # Circuit of a harvester -------------------------------------------------------------------------
 
     def with_flux(self) -> Equations:
@@ -422,6 +432,11 @@ class Equations:
         return replace(
             self, blocks=blocks, terms=(*self.terms, *kept), coarse=None, circuit=None, voltage=voltage
         )
+
+
+def _unit_basis(K: np.ndarray) -> np.ndarray:
+    """Compute a basis B, in columns, in which a positive definite stiffness K is the identity, B^T K B."""
+    return solve_lower(np.linalg.cholesky(K), np.eye(len(K))).T
 
 
 def _sum_over_quantities(

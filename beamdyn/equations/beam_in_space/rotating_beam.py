@@ -96,9 +96,10 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
     for name, place in linear.blocks.items():
         component, order, conditions = known[name]
         of_field, sign = spaces.functions(conditions), _SIGNS[component]
-        functions[place, component] = sign * of_field.evaluate(xi, order) / beam.length**order
+        of_coordinates = linear.shapes[name].matrix.T
+        functions[place, component] = sign * of_coordinates @ of_field.evaluate(xi, order) / beam.length**order
         if order == 2:  # a field of bending, whose functions may rotate the root
-            at_root, *turned = of_field.evaluate(np.array([0.0, *xi, 1.0]), 1).T / beam.length
+            at_root, *turned = (of_coordinates @ of_field.evaluate(np.array([0.0, *xi, 1.0]), 1)).T / beam.length
             hinges[place, component - 3] = sign * at_root
             slopes[place] += (sign > 0) * np.array(turned).T
     if beam.matrices is None:

@@ -26,6 +26,7 @@ from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.circuit import coupling_of
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
+from beamdyn.equations.fem import Fem
 from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
@@ -62,7 +63,13 @@ class Model(FieldsOnly):
     @cached_property
     def equations(self) -> Equations:
         """Equations of motion, linear about the straight beam or, with section matrices, its curved axis."""
-        return self.over() if self.scene.beam.matrices is None else self.bent.about_straight
+        return self._straight if self.scene.beam.matrices is None else self.bent.about_straight
+
+    @property
+    def _straight(self) -> Equations:
+        straight = self.over()
+        bends = self.scene.physics.large_deflection and isinstance(self.discretization, Fem)
+        return straight.of_unit_stiffness() if bends else straight
 
     def over(self, spaces: Spaces | None = None) -> Equations:
         """Build the equations of motion of the straight beam, in given functions or the discretization's."""
@@ -96,7 +103,7 @@ class Model(FieldsOnly):
         # The import is inside the function because few scenes need the module.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
-        straight = self.equations if self.scene.beam.matrices is None else self.over()
+        straight = self.equations if self.scene.beam.matrices is None else self._straight
         return assemble_beam_in_space(self.scene, self.discretization, straight)
 
     @cached_property
