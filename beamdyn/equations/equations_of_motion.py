@@ -401,7 +401,7 @@ class Equations:
         )
 
     def of_unit_stiffness(self) -> Equations:
-        """Transform each field's coordinates to others in which its stiffness at rest, shifted, is the identity.
+        """Transform each field's coordinates so that its stiffness at rest, plus the shift, is the identity.
 
         Short elements make the stiffness ill-conditioned: the elastic forces of smooth deflections are small
         differences of large numbers.

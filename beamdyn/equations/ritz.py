@@ -23,7 +23,9 @@ from beamdyn.scene.sections import weight_degree
 
 _MOST_ACROSS = 16  # largest number of functions across the width of a plate
 MOST_FUNCTIONS = 200  # largest accepted number of functions on each segment
-_POINTS_OF_TURNS = 14  # number of additional Gauss points on each segment, for large deflections
+# Smallest number of additional Gauss points on each segment, for large deflections; where many functions are
+# needed, the sections' rotation varies as fast as they do, and half their number is added.
+_POINTS_OF_TURNS = 14
 # Number of Gauss points on each cell of the basis "moments", whose cells are many and small.
 _POINTS_OF_MOMENTS = 8
 
@@ -103,7 +105,7 @@ class Ritz:
         spaces = self.spaces(beam)
         if isinstance(spaces, MomentSpaces):
             return Cells(spaces.cells, _POINTS_OF_MOMENTS)
-        return Cells(np.array(beam.breakpoints), spaces.points + _POINTS_OF_TURNS)
+        return Cells(np.array(beam.breakpoints), spaces.points + max(_POINTS_OF_TURNS, self.functions // 2))
 
     def coarser(self) -> Ritz:
         """Return a smaller basis, for the error estimate.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
 
 import numpy as np
@@ -126,8 +126,16 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
     found, is_lost = compare_bent(next(models))
     if found.model.discretization.order is not None:
         target = max(target, _MESHES_OF_BENT)
-    while is_lost and found.error > max(target, 3 * found.rounding) and (finer := next(models, None)):
+    is_confirmed = False  # one model in which the beam stays stable may be too coarse to lose stability
+    while (found.error > max(target, 3 * found.rounding) if is_lost else not is_confirmed) and (
+        finer := next(models, None)
+    ):
+        before, was_lost = found.speed, is_lost
         found, is_lost = compare_bent(finer)
+        is_confirmed = is_lost == was_lost
+        if is_lost and was_lost:
+            # Bases that do not resolve a boundary layer yet differ little from those with two functions less.
+            found = replace(found, error=max(found.error, abs(before / found.speed - 1)))
     return found, is_lost
 
 

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
+from beamdyn.modes import critical_search
+from beamdyn.modes.critical_search import FoundSpeed
 from beamdyn.modes.modal.model import Model
 
 BEAM = bd.Beam.from_stiffness(
@@ -133,3 +135,44 @@ def test_setting_angles_of_a_cambered_strip(tolerance: float) -> None:
     scene = bd.Scene(strip, bd.Mount(0.2), physics=bd.Physics(camber=True))
     found, best = (bd.setting_angle_limits(scene, 50.0, tolerance=t) for t in (tolerance, 1e-5))
     assert max(abs(found.first - best.first), abs(found.second - best.second)) <= found.error
+
+
+OBLIQUE = bd.Scene(
+    bd.Beam.rectangular(0.05, 0.01, 0.4e-3, 200e9, 7850.0, poissons_ratio=0.3),
+    bd.Mount(0.215, math.pi / 4, math.pi / 6),
+    physics=bd.Physics(planes=2, rotary_inertia=True, torsion=True, large_deflection=True),
+)
+
+
+def test_stiffness_of_a_beam_bent_in_space_is_symmetric_in_a_boundary_layer() -> None:
+    """The rotation of sections varies as fast as the functions do, and was integrated with too few points."""
+    solver, speed = Model(OBLIQUE, bd.Ritz(50)).deflected, 2000.0
+    stiffness = solver.load.at(solver.equilibria(np.array([speed]))[0], speed**2).change
+    size = np.sqrt(np.abs(np.diag(stiffness)))
+    skew = (stiffness - stiffness.T) / np.outer(size, size)
+    assert np.abs(skew).max() < 1e-9  # 2e-7 with 14 points more than the functions need
+
+
+@pytest.mark.parametrize(
+    ("models", "used", "error"),
+    [
+        ([(4879.0, np.inf, False), (2806.0, 0.05, True), (2720.0, 0.01, True)], 2, 0.05),
+        ([(4879.0, np.inf, False), (4900.0, np.inf, False), (2720.0, 0.01, True)], 2, np.inf),
+        ([(2806.0, 0.2, True), (2720.0, 0.01, True), (2700.0, 0.001, True)], 2, 2806 / 2720 - 1),
+        ([(2806.0, 0.2, True), (2600.0, 0.01, True), (2599.0, 0.001, True)], 3, 0.001),
+    ],
+)
+def test_loss_of_stability_of_a_bent_beam_is_confirmed_by_the_model_before(
+    models: list[tuple[float, float, bool]], used: int, error: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A coarse basis may miss it, and two functions less may change the speed by less than its error."""
+    model = Model(OBLIQUE, bd.Ritz(9))
+
+    def found_with(k: int) -> tuple[FoundSpeed, bool]:
+        speed, difference, is_lost = models[k]
+        return FoundSpeed(model, model, speed, difference, 1e-10), is_lost
+
+    monkeypatch.setattr(critical_search, "compare_bent", found_with)
+    found, is_lost = critical_search.search_bent(iter(range(3)), 0.06)  # pyright: ignore
+    assert (found.speed, is_lost) == models[used - 1][::2]
+    assert found.error == pytest.approx(error, rel=1e-12)

@@ -60,6 +60,15 @@ def test_a_tapered_beam_bends_as_the_root_of_the_speed_beyond_buckling(
     assert np.ptp(slope) < 1e-3 * np.abs(slope).max()
 
 
+@pytest.mark.parametrize("beyond", [1e-6, 1e-4, 1e-2])
+def test_many_finite_elements_bend_as_a_basis_of_polynomials_does(beyond: float) -> None:
+    """Rounding of the elastic forces of short elements kept Newton's method from converging."""
+    speed = bd.equilibrium_branches(SCENE, 170.0).critical_speed * (1 + beyond)
+    fine = bd.equilibrium(SCENE, speed, "bent", bd.Ritz(14))
+    found = bd.equilibrium(SCENE, speed, "bent", bd.Fem(100))
+    assert np.abs(found.tip - fine.tip).max() <= found.error < 1e-4
+
+
 def _stepped() -> tuple[bd.Scene, float]:
     """Build a beam of three segments on its bent branch; also compute its critical speed [rad/s]."""
     stations = [0, 0.3, 0.7, 1]

@@ -95,13 +95,14 @@ def assemble_beam_in_space(scene: Scene, discretization: Discretization, linear:
     hinges, slopes = np.zeros((n, 3)), np.zeros((n, stations.sections))
     for name, place in linear.blocks.items():
         component, order, conditions = known[name]
-        of_field, sign = spaces.functions(conditions), _SIGNS[component]
-        of_coordinates = linear.shapes[name].matrix.T
-        functions[place, component] = sign * of_coordinates @ of_field.evaluate(xi, order) / beam.length**order
+        of_field, of_coordinates = spaces.functions(conditions), linear.shapes[name].matrix.T
+        strains = of_coordinates @ of_field.evaluate(xi, order) / beam.length**order
+        functions[place, component] = _SIGNS[component] * strains
         if order == 2:  # a field of bending, whose functions may rotate the root
-            at_root, *turned = (of_coordinates @ of_field.evaluate(np.array([0.0, *xi, 1.0]), 1)).T / beam.length
-            hinges[place, component - 3] = sign * at_root
-            slopes[place] += (sign > 0) * np.array(turned).T
+            sections = np.array([0.0, *xi, 1.0])
+            at_root, *turned = (of_coordinates @ of_field.evaluate(sections, 1)).T / beam.length
+            hinges[place, component - 3] = _SIGNS[component] * at_root
+            slopes[place] += (_SIGNS[component] > 0) * np.array(turned).T
     if beam.matrices is None:
         # Functions of bending also stretch the axis, so that the line of centres of tension keeps its length.
         offset, across = _tension(beam, xi)

@@ -26,7 +26,6 @@ from beamdyn.equations.assembly import assemble_over
 from beamdyn.equations.circuit import coupling_of
 from beamdyn.equations.discretization import Discretization, Spaces
 from beamdyn.equations.equations_of_motion import Equations, SteadyPencil
-from beamdyn.equations.fem import Fem
 from beamdyn.equations.mass import sampled_axial_stiffness, steady_tension
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.modal.eigenproblem import Eigensolver, LeadingSolver, Solver
@@ -65,11 +64,11 @@ class Model(FieldsOnly):
         """Equations of motion, linear about the straight beam or, with section matrices, its curved axis."""
         return self._straight if self.scene.beam.matrices is None else self.bent.about_straight
 
-    @property
+    @cached_property
     def _straight(self) -> Equations:
-        straight = self.over()
-        bends = self.scene.physics.large_deflection and isinstance(self.discretization, Fem)
-        return straight.of_unit_stiffness() if bends else straight
+        """Equations of the straight beam; for bent finite elements, in well-conditioned coordinates."""
+        straight, has_mesh = self.over(), self.discretization.order is not None
+        return straight.of_unit_stiffness() if has_mesh and self.scene.physics.large_deflection else straight
 
     def over(self, spaces: Spaces | None = None) -> Equations:
         """Build the equations of motion of the straight beam, in given functions or the discretization's."""
@@ -103,8 +102,7 @@ class Model(FieldsOnly):
         # The import is inside the function because few scenes need the module.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
-        straight = self.equations if self.scene.beam.matrices is None else self._straight
-        return assemble_beam_in_space(self.scene, self.discretization, straight)
+        return assemble_beam_in_space(self.scene, self.discretization, self._straight)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:
