@@ -91,6 +91,16 @@ def test_every_standard_brake_sweeps_spreads_and_states_what_it_hangs_on(answer,
     assert answer(name, "", "", *spread)[0] == DONE
 
 
+@pytest.mark.parametrize(
+    ("name", "friction"), [("band", "0.2"), ("block", "0.4"), ("drum", "0.35"), ("sliding", "0.35")]
+)
+def test_without_friction_no_torque_hangs_on_the_rotation(answer, name, friction):
+    """Both torques are 0, whose ratio was a warning of numpy."""
+    code, out, err = answer(name, f"friction = {friction}", "friction = 0")
+    assert (code, err) == (DONE, "")
+    assert "friction -+10 %: 0 N m, 0 N m" in out and "reverse" not in out
+
+
 def test_the_doubt_of_a_drum_is_that_of_two_more_runs(answer):
     """230.541 and 298.001 N m: recomputed at 0.315 and 0.385, by a second program."""
     _, out, _ = answer("drum")
