@@ -197,7 +197,8 @@ def draw_scatter(
         weights = np.full(len(drawn), 100 / len(values))
         some = "" if low <= drawn.min() and drawn.max() <= high else ", some beyond the picture"
         start, end = max(low, drawn.min()), min(high, drawn.max())
-        bins, within = (1, (low, high)) if _is_one_number(start, end) else (_BINS, (start, end))
+        # Of an odd number of bins, the middle one has the number that all results are.
+        bins, within = (_BINS + 1, (low, high)) if _is_one_number(start, end) else (_BINS, (start, end))
         ax.hist(drawn, bins, range=within, weights=weights, color=COLOURS[5], label=f"random designs{some}")
     for name, style, colour, places in marks:
         shown = [place for place in places if low <= place <= high]
