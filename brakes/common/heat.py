@@ -34,6 +34,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.locking import LEAST_MARGIN
 
 _NODES = 20  # nodes of the quadrature between two temperatures of the curve
 _FEWER = 12  # nodes of the coarser quadrature that estimates the error of the finer one
@@ -136,7 +137,8 @@ class Duty:
         if not np.all(np.diff(curve[:, 0]) > 0):
             raise ValueError("friction_curve: the temperatures must increase from row to row")
         bound = "it is below the first temperature of friction_curve, {limit}"
-        early, first = np.asarray(self.surroundings) < curve[0, 0], curve[0, 0]
+        first = curve[0, 0]
+        early = np.asarray(self.surroundings) < first * (1 - LEAST_MARGIN)
         refuse(early, "surroundings", self.surroundings, "K", bound, "begin the curve there", limit=first)
 
     @property
@@ -432,7 +434,7 @@ class _Warming:
         if self.knots is None:
             return self.duty.capacity * rise / self.least(start)
         x, weights = _gauss(nodes)
-        bounds = [np.clip(at - start, 0.0, rise) for at, _ in self.knots]
+        bounds = [0.0 * rise, *(np.clip(at - start, 0.0, rise) for at, _ in self.knots[1:])]
         low, high = np.stack(bounds[:-1]), np.stack(bounds[1:])
         half, middle = (high - low) / 2, (high + low) / 2
         each = x.reshape(-1, *(1,) * half.ndim)  # axes: nodes, parts of the curve, cases

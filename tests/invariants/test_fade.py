@@ -161,6 +161,16 @@ def test_bad_duties_are_refused(given, said):
         drum.Duty(**{"inertia": 20.0, "speed": 50.0, "heated_mass": 5.0} | given)
 
 
+@pytest.mark.parametrize("change", [-1e-13, 0.0, 1e-13])
+def test_the_thirteenth_digit_does_not_put_a_curve_above_the_surroundings(change):
+    """Temperatures in two units differ by rounding: "it is below the first temperature ..., 293.15 K"."""
+    curve = [[293.15 * (1 + change), 0.4], [393.15, 0.4]]
+    found = drum.repeat_stops(
+        drum.Duty(20.0, 1e-6, 5.0, friction_curve=curve), 0.4, lambda mu: 1000.0 * mu
+    )  # it warms by less than that
+    assert found.angle[0] == pytest.approx(2.5e-14, rel=1e-13)
+
+
 def test_a_curve_at_which_the_band_locks_is_refused():
     differential = replace(BAND, second_arm=0.02)
     duty = drum.Duty(20.0, 50.0, 5.0, friction_curve=[[290.0, 0.3], [400.0, 0.6]])
