@@ -107,7 +107,7 @@ class RubbingAnswer(Answer):
         )
         others = [f"{words} {_change(self.again(each).torque, torque)}" for words, each in self.other_laws()]
         turned = self.again(reverse=back).torque
-        if not abs(turned / torque - 1) < 1e-9:  # true also for nan, when the brake locks
+        if not abs(turned - torque) <= 1e-9 * torque:  # true also for nan, when the brake locks
             others.append(f"{'reverse' if back else 'forward'} {_change(turned, torque)}")
         said = "; ".join((f"friction -+{100 * PART:.0f} %: {ends}", *others))
         return f"At this force, torque {tables.format_number(torque)} N m; {said}."

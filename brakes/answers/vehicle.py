@@ -217,7 +217,7 @@ def _failures(way: OneDirection) -> list[str]:
     which designs hold.
     """
     holding, slowing = way.holding, way.slowing
-    said = [f"it {slowing.message}"] if slowing is not None and not np.all(slowing.stops) else []
+    said = [slowing.message] if slowing is not None and not np.all(slowing.stops) else []
     alone = np.ndim(holding.status) == 0 and holding.status != "holds"
     return [holding.message, *said] if alone else said
 

@@ -34,6 +34,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.locking import LEAST_MARGIN
 
 _NODES = 20  # nodes of the quadrature between two temperatures of the curve
 _FEWER = 12  # nodes of the coarser quadrature that estimates the error of the finer one
@@ -136,7 +137,8 @@ class Duty:
         if not np.all(np.diff(curve[:, 0]) > 0):
             raise ValueError("friction_curve: the temperatures must increase from row to row")
         bound = "it is below the first temperature of friction_curve, {limit}"
-        early, first = np.asarray(self.surroundings) < curve[0, 0], curve[0, 0]
+        first = curve[0, 0]
+        early = np.asarray(self.surroundings) < first * (1 - LEAST_MARGIN)
         refuse(early, "surroundings", self.surroundings, "K", bound, "begin the curve there", limit=first)
 
     @property
@@ -184,7 +186,8 @@ class Fade(Result):
     pv : ndarray
         Largest pressure times rubbing speed, at the start of the first stop [W/m2].
     error : ndarray
-        Estimate of the relative error of the angles, by a quadrature of fewer nodes.
+        Estimate of the relative error of the angles: rounding, and a quadrature of fewer nodes; both grow as
+        the torque falls to that of the load.
 
     Examples
     --------
@@ -298,22 +301,29 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     20.0
     """
     path = _Warming(duty, friction, torque_at)
-    start, stops = duty.surroundings + path.cases, []
-    status = np.full(start.shape, "stops", dtype="U11")
+    above, stops = path.cases, []  # temperature above the surroundings
+    status = np.full(above.shape, "stops", dtype="U11")
     for k in range(int(np.max(duty.stops))):
-        end, how = _end_of_stop(path, start)
+        start = duty.surroundings + above
+        rise, how = _rise_in_stop(path, start)
         status = np.where((status == "stops") & (k < np.asarray(duty.stops)), how, status)
-        stops.append((start, end, path.friction(end), path.angle(start, end), path.angle(start, end, _FEWER)))
-        start = duty.surroundings + (end - duty.surroundings) * duty.kept
-    begun, ended, last, angle, rougher = (np.stack(each) for each in zip(*stops, strict=True))
+        stops.append((above, rise, path.angle(start, rise), path.angle(start, rise, _FEWER)))
+        above = (above + rise) * duty.kept
+    above, rise, angle, rougher = (np.stack(each) for each in zip(*stops, strict=True))
+    begun, ended = duty.surroundings + above, duty.surroundings + (above + rise)
+    last = path.friction(ended)
     count = np.broadcast_to(duty.stops, status.shape).astype(int)
 
     def at_last(each: np.ndarray) -> np.ndarray:
         """Return the value of the last stop of each case."""
         return np.take_along_axis(each, count[None] - 1, axis=0)[0]
 
-    heat, kept = duty.capacity * (ended - begun), np.asarray(duty.kept)
+    heat, kept = duty.capacity * rise, np.asarray(duty.kept)
     angle, rougher = angle + duty.free_angle, rougher + duty.free_angle
+    # The load multiplies errors of a stop's heat: as the torque falls to its torque, a stop becomes endless.
+    torque = path.torque(last)
+    rounding = 8 * _EPS * (1 + heat / (angle * torque))
+    error = (rounding + np.abs(rougher / angle - 1)) * torque / (torque - duty.load_torque)
     with np.errstate(divide="ignore"):
         settled = np.where(np.asarray(duty.load_torque) > 0, np.nan, duty.rise_of_a_stop / (1 - kept))
     return Fade(
@@ -324,7 +334,7 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
         end_friction=last,
         angle=angle,
         heat=heat,
-        hottest=(at_last(np.maximum.accumulate(ended)) - duty.surroundings)[()],
+        hottest=at_last(np.maximum.accumulate(above + rise))[()],
         first_angle=angle[0],
         last_angle=at_last(angle),
         first_friction=path.friction(begun[0]),
@@ -332,21 +342,21 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
         energy=at_last(heat),
         settled=(settled + path.cases)[()],
         pv=(pv + path.cases)[()],
-        error=(_EPS * 8 + at_last(np.maximum.accumulate(np.abs(rougher / angle - 1))))[()],
+        error=at_last(np.maximum.accumulate(error))[()],
     )
 
 
-def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the temperature after a stop, nan if it does not end, and the status of the stop."""
+def _rise_in_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Compute the temperature rise of a stop [K], nan if it does not end, and the status of the stop."""
     duty, load = path.duty, np.asarray(path.duty.load_torque)
-    low = start + duty.rise_of_a_stop
+    low = duty.rise_of_a_stop + 0 * start
     with np.errstate(divide="ignore", invalid="ignore"):
-        most = start + duty.rise_of_a_stop / np.maximum(1 - load / path.least(start), _EPS)
-    high = np.where(np.isfinite(path.last), path.last, most)
+        most = low / np.maximum(1 - load / path.least(start), _EPS)
+    high = np.where(np.isfinite(path.last), path.last - start, most)
 
-    def over(end: np.ndarray) -> np.ndarray:
-        """Return whether, up to a temperature [K], the stop ends or the torque fades to the load's torque."""
-        return path.stopped(start, end) | (path.least(start, end) <= load)
+    def over(rise: np.ndarray) -> np.ndarray:
+        """Return whether, up to a rise [K], the stop ends or the torque fades to the load's torque."""
+        return path.stopped(start, rise) | (path.least(start, start + rise) <= load)
 
     # Only a stop with a friction curve can be too hot. Without a curve the stop ends at `high`, but rounding
     # may make over(high) false.
@@ -359,7 +369,7 @@ def _end_of_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndar
         ended = np.concatenate([over(grid[1:-1]), np.full((1, *start.shape), True)])
         first = ended.argmax(axis=0)[None]
         low, high = (np.take_along_axis(grid, k, axis=0)[0] for k in (first, first + 1))
-    faded = ~hot & (path.least(start, high) <= load)
+    faded = ~hot & (path.least(start, start + high) <= load)
     status = np.select([~np.isfinite(start), hot, faded], ["stops", "too hot", "never stops"], "stops")
     return np.where(status == "stops", high, np.nan), status
 
@@ -416,22 +426,22 @@ class _Warming:
             found += [np.where((start < at) & (at < end), mu, found[0]) for at, mu in self.knots]
         return self.torque(np.min(np.broadcast_arrays(*found), axis=0))
 
-    def angle(self, start: Numbers, end: Numbers, nodes: int = _NODES) -> np.ndarray:
-        """Compute the angle [rad] in which a stop warms the brake from one temperature to another.
+    def angle(self, start: Numbers, rise: Numbers, nodes: int = _NODES) -> np.ndarray:
+        """Compute the angle [rad] in which a stop warms the brake from a temperature by a rise [K].
 
         It is the integral of heat capacity over torque.
         """
         if self.knots is None:
-            return self.duty.capacity * (end - start) / self.least(start)
+            return self.duty.capacity * rise / self.least(start)
         x, weights = _gauss(nodes)
-        bounds = [np.clip(at, start, end) for at, _ in self.knots]
+        bounds = [0.0 * rise, *(np.clip(at - start, 0.0, rise) for at, _ in self.knots[1:])]
         low, high = np.stack(bounds[:-1]), np.stack(bounds[1:])
         half, middle = (high - low) / 2, (high + low) / 2
         each = x.reshape(-1, *(1,) * half.ndim)  # axes: nodes, parts of the curve, cases
-        slowness = 1 / self.torque(self.friction(middle + half * each))
+        slowness = 1 / self.torque(self.friction(start + (middle + half * each)))
         return self.duty.capacity * (np.tensordot(weights, slowness, 1) * half).sum(axis=0)
 
-    def stopped(self, start: Numbers, end: Numbers) -> np.ndarray:
-        """Return whether the heat up to a temperature [K] is at least the energy of the whole stop."""
-        driven = self.duty.load_torque * self.angle(start, end) / self.duty.capacity
-        return end - start >= self.duty.rise_of_a_stop + driven - 4 * _EPS * np.abs(end)
+    def stopped(self, start: Numbers, rise: Numbers) -> np.ndarray:
+        """Return whether the heat of a temperature rise [K] is at least the energy of the whole stop."""
+        driven = self.duty.load_torque * self.angle(start, rise) / self.duty.capacity
+        return rise * (1 + 4 * _EPS) >= self.duty.rise_of_a_stop + driven

@@ -175,5 +175,5 @@ def factor_chart(brake: DrumBrake, friction: float | None = None, reverse: bool 
     if limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=of_shoes[first].name))
     # C* grows without bound towards locking: the range of its axis follows from C* at a lower friction.
-    near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1]), mu, result.c_star))
+    near = float(np.interp(min(friction or 0.35, 0.6 * mu[-1], 0.6 * limit), mu, result.c_star))
     return over_friction("Shoe factors", [*of_shoes, *whole], marks, near)

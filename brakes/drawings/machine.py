@@ -70,7 +70,7 @@ def factor_chart(result: MachineResult) -> Chart:
     if 0 < limit < LIMIT_SHOWN:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=own.name))
     # C* grows without bound towards locking: the range of its axis follows from C* at a lower friction.
-    near = float(np.interp(min(mu, 0.6 * top), at, own.y))
+    near = float(np.interp(min(mu, 0.6 * top, 0.6 * limit), at, own.y))
     grows = any(np.isfinite(way.locking_friction).any() for way in ways)
     return over_friction("Brake factor", curves, marks, near if grows else None)
 

@@ -100,9 +100,9 @@ class Shoe:
         y, least = np.asarray(y), LEAST_MARGIN * np.asarray(self.drum_radius)
         bound, remedy = "the pin lies below the centre", "give (b, -c), c > 0"
         refuse(y >= -least, "pivot[1]", self.pivot[1], "m", bound, remedy)
-        far = np.hypot(b, y)
-        name, bound = "distance of the pivot from the centre", "more than two drum radii"
-        refuse(far > 2 * (np.asarray(self.drum_radius) + least), name, far, "m", bound, "give {unit}")
+        far, most = np.hypot(b, y), 2 * np.asarray(self.drum_radius)
+        name, bound = "distance of the pivot from the centre", "more than two drum radii, {limit}"
+        refuse(far > most + 2 * least, name, far, "m", bound, limit=most)
         above = "the force must act above the pin (at -c)"
         refuse(self.force_arm - y <= least, "force_arm", self.force_arm, "m", above)
         bound = "the arc is empty: it must exceed {other}"

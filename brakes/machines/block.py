@@ -25,6 +25,8 @@ _LAW = (
     "pressure: long block under uniform pressure; short: all forces at the block's middle"
 )
 _BLOCKS = "single: one lever; double: two, each with the force, mirrored so that one leads and one trails"
+_NODES, _WEIGHT = np.polynomial.legendre.leggauss(16)  # of a quadrature over half a block
+_AT = (1 + _NODES) / 2
 
 
 @dataclass(frozen=True)
@@ -156,7 +158,8 @@ class Block(Machine):
         chord = 2 * np.sin(half)
         if self.law != "wear":
             return chord, 0.0 * half, chord if self.law == "short" else 2 * half
-        even, odd = half + np.sin(2 * half) / 2, half - np.sin(2 * half) / 2
+        even = half + np.sin(2 * half) / 2
+        odd = half * (np.sin(np.multiply.outer(half, _AT)) ** 2 @ _WEIGHT)  # half - sin(2 half) / 2 cancels
         peak = self._peak()
         return b * even / peak, h * odd / peak, b * chord / peak
 

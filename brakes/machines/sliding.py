@@ -261,12 +261,13 @@ class Sliding(Machine):
 
     def _integrals(self, delta: np.ndarray) -> tuple[Any, Any, Any]:
         """Integrate sin(x - delta), also times sin x and times cos x, over the contact; x is the angle."""
-        e1, e2 = self._contact(delta)
-        wide = (np.sin(2 * e2 - delta) - np.sin(2 * e1 - delta)) / 2
-        high = (np.cos(2 * e2 - delta) - np.cos(2 * e1 - delta)) / 2
-        S = ((e2 - e1) * np.cos(delta) - wide) / 2
-        C = (-high - (e2 - e1) * np.sin(delta)) / 2
-        return np.cos(e1 - delta) - np.cos(e2 - delta), S, C
+        u, v = (each - delta for each in self._contact(delta))
+        m, h = (u + v) / 2, (v - u) / 2
+        # In axes turned by delta a narrow contact keeps its digits; in those of the lining small integrals
+        # would be differences of large terms.
+        S, C = h - np.cos(2 * m) * np.sin(2 * h) / 2, np.sin(2 * m) * np.sin(2 * h) / 2
+        sine, cosine = np.sin(delta), np.cos(delta)
+        return 2 * np.sin(m) * np.sin(h), S * cosine + C * sine, C * cosine - S * sine
 
     def _moment(self, integrals: tuple[Any, Any, Any], mu: Numbers, s: float) -> Any:
         """Compute the moment [m] of pressure and friction about the abutment over p0 and the area w r.

@@ -58,7 +58,8 @@ def test_energy_is_kept_over_random_duties():
     put_in = (inertia * speed**2 / 2 + load * found.angle)[:, ended]
     np.testing.assert_allclose(found.heat[:, ended], put_in, rtol=1e-10)  # sums of one quadrature
     cooled = 293.15 + (found.end[:-1] - 293.15) * duty.kept
-    np.testing.assert_array_equal(found.start[1:][:, ended], cooled[:, ended])
+    # The heights above the surroundings are kept, and rounded when added: one rounding of a temperature.
+    np.testing.assert_allclose(found.start[1:][:, ended], cooled[:, ended], rtol=4e-16)
 
 
 def test_angle_of_a_straight_curve_in_closed_form():
@@ -160,6 +161,16 @@ def test_bad_duties_are_refused(given, said):
         drum.Duty(**{"inertia": 20.0, "speed": 50.0, "heated_mass": 5.0} | given)
 
 
+@pytest.mark.parametrize("change", [-1e-13, 0.0, 1e-13])
+def test_the_thirteenth_digit_does_not_put_a_curve_above_the_surroundings(change):
+    """Temperatures in two units differ by rounding: "it is below the first temperature ..., 293.15 K"."""
+    curve = [[293.15 * (1 + change), 0.4], [393.15, 0.4]]
+    found = drum.repeat_stops(
+        drum.Duty(20.0, 1e-6, 5.0, friction_curve=curve), 0.4, lambda mu: 1000.0 * mu
+    )  # it warms by less than that
+    assert found.angle[0] == pytest.approx(2.5e-14, rel=1e-13)
+
+
 def test_a_curve_at_which_the_band_locks_is_refused():
     differential = replace(BAND, second_arm=0.02)
     duty = drum.Duty(20.0, 50.0, 5.0, friction_curve=[[290.0, 0.3], [400.0, 0.6]])
@@ -185,3 +196,16 @@ def test_no_rounding_makes_a_lining_of_constant_friction_too_hot():
             rise = duty.rise_of_a_stop * 262.5 / (262.5 - load)
             assert found.status == "stops"
             assert found.hottest == pytest.approx(rise, rel=1e-12, abs=1e-12)  # of temperatures near 293 K
+
+
+@pytest.mark.parametrize("speed", [50.0, 1.0, 1e-2, 1e-6])
+@pytest.mark.parametrize("part", [0.0, 0.99, 1 - 1e-6, 1 - 1e-9])  # of the torque, which the load has
+@pytest.mark.parametrize("curve", [None, [[293.15, 0.4], [1e11, 0.4]]])
+def test_angles_of_gentle_stops_and_of_stops_beside_a_load_keep_within_their_error(speed, part, curve):
+    """A stop of constant friction: J w^2 / 2 = (M - L) q; a gentle one warms the brake by nanokelvins."""
+    load = 400.0 * part
+    duty = drum.Duty(20.0, speed, 5.0, load_torque=load, friction_curve=curve)
+    found = drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu)
+    exact = 20.0 * speed**2 / 2 / (400.0 - load)  # M - L has no rounding
+    assert abs(found.angle[0] / exact - 1) <= found.error < 1e-14 / (1 - part)
+    assert found.hottest == pytest.approx(400.0 * exact / 2500.0, rel=float(found.error))

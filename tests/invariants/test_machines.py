@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
 
 from brakes import drum, machines
@@ -169,3 +170,16 @@ def test_arrays_are_the_cases_one_by_one(brake):
     one = [machines.solve_brake(brake, friction=float(each), force=500.0) for each in mu]
     for name in ("torque", "c_star_slope", "peak_pressure", "locking_friction", "error"):
         assert np.array_equal(getattr(many, name), [getattr(each, name) for each in one])
+
+
+def test_the_stated_error_covers_that_of_a_narrow_block_with_a_far_fulcrum():
+    """Against 30 digits: the block's width is a fiftieth of what the fulcrum's height multiplies."""
+    r, b, offset, half = 0.04096512127180139, 0.004465673504787392, 0.05757936414019231, 0.03360478116
+    block = machines.Block(r, 0.05, 2 * half, 0.5, b, offset)
+    found = machines.solve_brake(block, friction=0.0, force=100.0)
+    with mp.workdps(30):
+        h, x = mpf(r) + mpf(offset), mpf(half)
+        moment = mpf(b) ** 2 * (x + mp.sin(2 * x) / 2) + h**2 * (x - mp.sin(2 * x) / 2)
+        end = mpf(b) * mp.cos(x) + h * mp.sin(x)
+        pressure = 100 * mpf(0.5) / (mpf(r) * mpf(0.05) * moment / end)
+        assert abs(found.peak_pressure / pressure - 1) < found.error < 1e-14

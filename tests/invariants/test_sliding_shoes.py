@@ -1,10 +1,11 @@
 """Sliding shoes: contact on one side only, equilibrium by quadrature, and the only solution."""
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 
 from brakes import machines
 
@@ -136,3 +137,45 @@ def test_the_slope_of_the_factor_counts_how_the_contact_moves(reverse):
     low, high = (solved(BRAKE, 0.3 + k * step, reverse=reverse)[0].c_star for k in (-1, 1))
     slope = solved(BRAKE, 0.3, reverse=reverse)[0].c_star_slope
     assert slope == pytest.approx((high - low) / (2 * step), rel=1e-8)  # of differences over 2e-5
+
+
+NARROW = [  # friction, reverse, and a brake whose lining touches over less than two degrees
+    (0.0, False, (0.08090664019526993, 0.05, 1.5503827467931042, 2.412281946117673, 0.016863753392712327,
+                  0.08042285765427175, 0.023690748802092685, -0.07382937373221032)),
+    (0.21641088562300448, True, (0.029446373639641053, 0.05, 1.7552918943108704, 2.1237175304213567,
+                  -0.009139652256614431, 0.019002329989908244, 0.012571205782743428, -0.12149107534957426)),
+    (0.6762929344232588, True, (0.22830717408064638, 0.05, 2.015956783023399, 2.2157659391861944,
+                  0.08558061657577996, 0.13015118069125273, 0.06025739428446586, -0.1297779432939148)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("friction", "reverse", "given"), NARROW)
+def test_the_stated_error_covers_that_of_a_narrow_contact(friction, reverse, given):
+    """Against 30 digits: on the last degree of a lining, integrals that are differences lost ten digits."""
+    brake = machines.Sliding(*given, shoes="single")
+    found, lining, start = solved(brake, friction, reverse=reverse)
+    with mp.workdps(30):
+        r, width, first, last, b, c, a, psi = map(mpf, astuple(brake)[:8])
+        mu = mpf(friction) * (1 if reverse else -1)
+
+        def contact(delta):
+            return max(first, delta), min(last, delta + mp.pi)
+
+        def sums(delta):
+            """Force along x, force along y, and the moment about the abutment, of the lining on the shoe."""
+            S, C, K = (
+                mp.quad(lambda x, f=f: mp.sin(x - delta) * f(x), contact(delta))
+                for f in (mp.sin, mp.cos, lambda x: 1)
+            )
+            return mu * C - S, C + mu * S, c * S - b * C + mu * (r * K - b * S - c * C)
+
+        def along_the_abutment(delta):
+            x, y, moment = sums(delta)
+            return mp.cos(psi) * y - mp.sin(psi) * (x + moment / (a + c))
+
+        delta = mp.findroot(along_the_abutment, (start, start + 1e-9), tol=1e-40)
+        low, high = contact(delta)
+        peak = max(mp.sin(low - delta), mp.sin(high - delta))
+        pressure = 1000 * (a + c) / sums(delta)[2] * peak / (width * r)
+        assert 0.001 < high - low < 0.02
+        assert abs(lining.peak_pressure / pressure - 1) < found.error < 1e-8

@@ -19,6 +19,7 @@ from brakes import drum, forklift, machines
 from brakes.drawings import mechanism_parts
 from brakes.drawings.arrows import ForceArrows
 from brakes.drawings.drum import brake_figure, drawing_of, factors, pressures
+from brakes.drawings.drum import factor_chart as factors_of_drum
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
 from brakes.drawings.forklift import answer_drawings, distances, forces_over, truck
 from brakes.drawings.machine import factor_chart
@@ -80,6 +81,17 @@ def test_factors_end_before_locking_and_say_where_it_is() -> None:
     assert said.get_color() == leading.get_color()  # of the shoe that locks
     trailing = factors(axes(), brake=drum.duplex(SHOE), reverse=True)
     assert not any("locks" in text.get_text() for text in trailing.texts)
+
+
+def test_charts_of_brakes_far_past_a_high_locking_friction_have_a_finite_range() -> None:
+    """A block that locks at 5, and a trailing shoe that locks at 2.6, as its pin is outside of the drum."""
+    block = machines.Block(0.15, 0.05, 0.6, 0.6, block_arm=0.25, offset=0.05, pressure_law="short")
+    shoe = drum.Shoe(0.138, 0.05, np.radians((12.0, 20.0)), (-0.05, -0.2), 0.115)
+    charts = (
+        factor_chart(machines.solve_brake(block, friction=10.0, force=500.0)),
+        factors_of_drum(drum.DrumBrake((shoe,), (False,)), 9.0),
+    )
+    assert all(np.isfinite(chart.y.high) for chart in charts)
 
 
 @pytest.mark.parametrize("friction, panels", [(0.35, 3), (1.2, 2)])

@@ -204,11 +204,17 @@ def test_a_bicycle_stops_down_its_slope(run):
     assert code == DONE and "A stop down the slope" in out
     assert "no wheel locks" in out and "front wheels locked" in out  # front and rear axle leading
     code, out, err = run("vehicle", text, ('brake_force = "250 N"', 'brake_force = "70 N"'))
-    assert code == NO_ANSWER and "it does not stop: the slope pulls as much as the brakes hold" in err
+    assert code == NO_ANSWER and "downhill: does not stop: the slope pulls as much as the brakes hold" in err
     assert row(out, "stopping distance, from the driver's reaction")[0] == "never"
     code, out, _ = run("vehicle", text, ('brake_force = "250 N"', ""))
     ratio = row(out, "braking force over the force normal to the road")
     assert ratio == row(out, "hardest braking with these shares, g")[:2]
+
+
+def test_a_sweep_counts_the_stops_that_do_not_end(capsys):
+    file = str(EXAMPLES / "bicycle.toml")
+    assert main(["vehicle", file, "--vary", "road.friction=0.1:1:4"]) == DONE
+    assert "front axle downhill: 1 of 4 cases do not stop" in capsys.readouterr().err
 
 
 def test_a_truck_is_stopped_by_its_lever(run, truck):

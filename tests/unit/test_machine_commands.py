@@ -91,6 +91,25 @@ def test_every_standard_brake_sweeps_spreads_and_states_what_it_hangs_on(answer,
     assert answer(name, "", "", *spread)[0] == DONE
 
 
+@pytest.mark.parametrize(
+    ("name", "friction"), [("band", "0.2"), ("block", "0.4"), ("drum", "0.35"), ("sliding", "0.35")]
+)
+def test_without_friction_no_torque_hangs_on_the_rotation(answer, name, friction):
+    """Both torques are 0, whose ratio was a warning of numpy."""
+    code, out, err = answer(name, f"friction = {friction}", "friction = 0")
+    assert (code, err) == (DONE, "")
+    assert "friction -+10 %: 0 N m, 0 N m" in out and "reverse" not in out
+
+
+@pytest.mark.parametrize("option", ["--vary", "--find", "--spread"])
+def test_a_curve_is_no_number_that_varies(answer, option):
+    """It was said to have no value in the file, or too few rows."""
+    values = {"--vary": "=0.3,0.4", "--find": "", "--spread": "=+-5%"}[option]
+    wanted = ("--so-that", "torque=600 N m") if option == "--find" else ()
+    code, _, err = answer("disc", "", "", option, f"heat.friction_curve{values}", *wanted)
+    assert code == BAD_INPUT and "unknown name 'heat.friction_curve'" in err
+
+
 def test_the_doubt_of_a_drum_is_that_of_two_more_runs(answer):
     """230.541 and 298.001 N m: recomputed at 0.315 and 0.385, by a second program."""
     _, out, _ = answer("drum")

@@ -158,3 +158,12 @@ def test_the_edge_of_what_is_hatched_parts_designs_and_has_no_steps():
     edge = region.vertices[(region.vertices > 0.1).all(axis=1) & (region.vertices < 0.9).all(axis=1)]
     slope = np.diff(edge[:, 1]) / np.diff(edge[:, 0])
     assert (np.abs(slope / 0.6 - 1) < 0.6).all()  # a step has slopes of 0 and infinity
+
+
+def test_answers_on_one_edge_of_a_map_are_drawn_without_lines():
+    """No cell of the grid has four answers: the lines of equal value have no points to label."""
+    z = np.array([[1.0, 2.0, 4.0], [np.nan] * 3]).T
+    inputs = [MapInput("a", "m", np.arange(3.0)), MapInput("b", "m", np.arange(2.0))]
+    figure = Figure()
+    plot_maps(inputs, [MapAnswer("c", z, np.where(np.isnan(z), "too long", ""))], figure.subplots())
+    assert "too long" in texts(figure)

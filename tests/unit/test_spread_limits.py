@@ -267,3 +267,13 @@ def test_outliers_do_not_make_a_picture_empty():
         "random designs, some beyond the picture",
         "worst cases, beyond the picture",
     ]
+
+
+@pytest.mark.parametrize("number", [200.0, -3e-7, 0.0])
+def test_a_histogram_shows_results_that_differ_by_rounding_as_one_number(number):
+    """A torque that is given is the same for all designs; numpy found no bins between its last digits."""
+    values = number * (1 + np.arange(-3, 4) * np.finfo(float).eps)
+    ax = draw_scatter(values, "torque", [("nominal", "-", "black", (number,))], None)
+    heights = [patch.get_height() for patch in ax.patches]
+    assert max(heights) == pytest.approx(100) and np.count_nonzero(heights) == 1
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["random designs", "nominal"]

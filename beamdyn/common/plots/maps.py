@@ -396,8 +396,8 @@ def levels_of(known: np.ndarray) -> np.ndarray:
 
 def _label_path(labels: PlacedLabels, text: str, paths: Sequence[np.ndarray], **style: Any) -> None:
     """Label the longest of several pieces of a contour line, near its middle if there is space."""
-    if paths:
-        points = np.asarray(max(paths, key=len))
+    points = np.asarray(max(paths, key=len, default=()))
+    if points.size:  # beside a region without answers a line may have a piece without points
         from_middle = np.abs(np.arange(len(points)) - (len(points) - 1) / 2)
         labels.add(text, points[np.argsort(from_middle, kind="stable")], **style)
 

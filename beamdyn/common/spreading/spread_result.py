@@ -165,6 +165,8 @@ def _digits_of(low: float, high: float) -> int:
 
 
 _BINS = 24
+_ROUNDING = 1e-12  # relative scatter up to which results count as one number
+_AROUND = 1e-3  # relative width of the picture on either side of this number
 _MOST_PANELS = 4  # largest number of results that a figure shows
 # Distance of the limits of a histogram from the 5 % and 95 % percentiles, divided by the distance between the
 # percentiles.
@@ -194,8 +196,10 @@ def draw_scatter(
     if drawn.size:
         weights = np.full(len(drawn), 100 / len(values))
         some = "" if low <= drawn.min() and drawn.max() <= high else ", some beyond the picture"
-        within = (max(low, drawn.min()), min(high, drawn.max()))
-        ax.hist(drawn, _BINS, range=within, weights=weights, color=COLOURS[5], label=f"random designs{some}")
+        start, end = max(low, drawn.min()), min(high, drawn.max())
+        # Of an odd number of bins, the middle one has the number that all results are.
+        bins, within = (_BINS + 1, (low, high)) if _is_one_number(start, end) else (_BINS, (start, end))
+        ax.hist(drawn, bins, range=within, weights=weights, color=COLOURS[5], label=f"random designs{some}")
     for name, style, colour, places in marks:
         shown = [place for place in places if low <= place <= high]
         beyond = ", beyond the picture" if len(shown) < np.isfinite(places).sum() else ""
@@ -211,7 +215,13 @@ def _seen(drawn: np.ndarray) -> tuple[float, float]:
     if not drawn.size:
         return -np.inf, np.inf
     low, high = np.percentile(drawn, [5, 95])
-    return low - _REACH * (high - low), high + _REACH * (high - low)
+    reach = _AROUND * abs(high) if _is_one_number(low, high) else _REACH * (high - low)
+    return low - reach, high + reach
+
+
+def _is_one_number(low: float, high: float) -> bool:
+    """Return whether two results differ by no more than rounding, between which a histogram has no bins."""
+    return high - low <= _ROUNDING * abs(high)
 
 
 def draw_indices(
