@@ -289,8 +289,8 @@ def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str
         raise InvalidValue(f"beam.{name}", value, bound, "vary beam.bending_stiffness or the like")
 
 
-def _why_no_factor(beam: Beam, name: str) -> tuple[str, ...]:
-    """Return why a property of a beam, or a side, takes no factor, and a remedy; empty if it takes one."""
+def _why_no_factor(beam: Beam, name: str) -> tuple[str, str] | None:
+    """Return why a property of a beam, or a side, takes no factor, and a remedy; None if it takes one."""
     if beam.matrices is not None:
         return "the beam's properties follow from its 6 x 6 section matrices", "change the matrices instead"
     if name in PROPERTY_UNITS and getattr(beam, name) is None:
@@ -298,7 +298,7 @@ def _why_no_factor(beam: Beam, name: str) -> tuple[str, ...]:
     if name in PROPERTY_UNITS and beam.electrodes is not None:
         remedy = "vary beam.density, beam.youngs_modulus or a side"
         return "layers need a beam with the properties of its rectangular section", remedy
-    return ()
+    return None
 
 
 def _scaled(beam: Beam, name: str, factor: float) -> Beam:
