@@ -21,7 +21,7 @@ from beamdyn.common.results.files import write_text
 from beamdyn.files.measured_curve_files import Frequency
 from beamdyn.files.measured_data import half_unit, measurements_of
 from beamdyn.files.scene_inputs import SceneInput
-from beamdyn.files.scenes import with_numbers_in_text
+from beamdyn.files.scenes import with_numbers_in_file
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.numbers import is_speed
 
@@ -175,7 +175,7 @@ def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None
     ]
     # `scene_found` is None only if the data do not determine a parameter: an error was then raised above.
     assert found.scene_found is not None
-    write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
+    write_text(to, with_numbers_in_file(scene, values, to, head))
 
 
 # Reading of options -------------------------------------------------------------------------------

@@ -142,6 +142,7 @@ def loads(
     speeds: LoadSpeeds,
     at: options.Stations,
     points: options.SectionPoints,
+    youngs_modulus: options.YoungsModulus,
     angle: Angle,
     window: options.Text | None = None,
     counting: CycleOptions = NOT_COUNTED,
@@ -184,7 +185,7 @@ def loads(
     for name, value in chosen.items() if t_end is None and speeds is None else ():
         remedy = "give --t-end or --speeds, too, or leave it out"
         raise ValueError(f"--{name} = {value}: the equilibrium does not depend on it; {remedy}")
-    where = {"at": at, "points": points}
+    where = {"at": at, "points": points, "youngs_modulus": youngs_modulus}
     basis: dict[str, Any] = {"discretization": discretization, "modes": "auto", "tolerance": 1e-5} | chosen
     span = None if window is None else parse_window(window, t_end)
     tables = None
@@ -213,6 +214,7 @@ def random_loads(
     duration: Duration,
     at: options.Stations,
     points: options.SectionPoints,
+    youngs_modulus: options.YoungsModulus,
     quantity: Drawn = None,
     modes: options.CountOrAuto = "auto",
     discretization: options.Discretization = "ritz",
@@ -231,7 +233,7 @@ def random_loads(
     asked = random_input
     shown, speed = asked.shown(scene), asked.speed_of(scene)
     given, basis = (asked.density, asked.drive), {"modes": modes, "discretization": discretization}
-    result = bd.random_loads(shown, speed, *given, duration, at, points, **basis)
+    result = bd.random_loads(shown, speed, *given, duration, at, points, youngs_modulus, **basis)
     return Answer(result, draw=partial(result.plot, quantity=quantity or "strain"))
 
 

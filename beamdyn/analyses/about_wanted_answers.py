@@ -15,7 +15,7 @@ from beamdyn.analyses.options import Discretization, FrequencyTolerance, Text
 from beamdyn.analyses.values import in_unit_of, parse_quantity, parse_speed
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.results.files import write_text
-from beamdyn.files.scenes import with_numbers_in_text
+from beamdyn.files.scenes import with_numbers_in_file
 from beamdyn.studies.questions import KINDS
 
 _WORDS = {"frequency": "frequencies", "critical speed": "critical_speed", "resonance speed": "crossings"}
@@ -109,4 +109,4 @@ def _write(found: bd.FoundDesign, scene: Path, to: Path) -> None:
         f"This scene {'has' if found.found else 'comes nearest to'}: {wanted}.",
     ]
     values = dict(zip(found.names, found.value.tolist(), strict=True))
-    write_text(to, with_numbers_in_text(scene.read_text(encoding="utf-8"), values, head))
+    write_text(to, with_numbers_in_file(scene, values, to, head))

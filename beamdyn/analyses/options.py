@@ -93,3 +93,11 @@ SectionPoints = Annotated[
         "direction, in which the beam bends, and in the second. Default: the outermost points."
     ),
 ]
+YoungsModulus = Annotated[
+    float | None,
+    AsText(lambda option, text, _: values.parse_positive(option, text, "Pa"), absent=none_given),
+    Parameter(
+        help='Modulus by which stress follows from strain, with its unit, e.g. "70 GPa"; default: that of a '
+        "rectangular beam."
+    ),
+]

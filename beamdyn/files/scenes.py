@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
@@ -23,57 +24,91 @@ from beamdyn.common.edge.data_text import (
     read_data,
 )
 from beamdyn.common.edge.inputs import Quantity, SiNumber
+from beamdyn.common.edge.toml_text import toml_of, toml_value
 from beamdyn.common.edge.units import InvalidInput, quantity, unit_as_written
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.inputs.described import described_hints, description, kinds_of
+from beamdyn.common.inputs.described import described_hints, description, kinds_of, part_at, with_parts
 from beamdyn.common.results.columns import DisplayUnits, known_unit
 from beamdyn.files.scene_inputs import PLACES, VARYING, SceneInput
 from beamdyn.scene.motion.kinds import KINDS
 from beamdyn.scene.motion.oscillating import check_record_times
-from beamdyn.scene.numbers import unit_of
+from beamdyn.scene.numbers import unit_of, with_numbers
 from beamdyn.scene.scene import Scene
 
 _DIGITS = 10
-_TABLE = re.compile(r"\s*\[([^\[\]]+)\]\s*(#.*)?")
+_TABLE = re.compile(r"\s*\[{1,2}([^\[\]]+)\]{1,2}\s*(#.*)?")
+# Keys of a scene file that may name a CSV file.
+_NAMES_OF_FILES = ("beam.stations", "motion.file", "motion.rotation.file")
 
 
-def with_numbers_in_text(text: str, values: Mapping[str, float], head: Iterable[str] = ()) -> str:
-    """Replace numbers in the text of a scene file, or add them to their tables.
+def with_numbers_in_file(
+    path: str | PathLike[str], values: Mapping[str, float], to: str | PathLike[str], head: Iterable[str] = ()
+) -> str:
+    """Return the text of a scene file with numbers replaced, or added to their tables.
+
+    The other lines stay as they are.  If a number has no line of its own, as in a list, the text is written
+    anew, without the comments of the file.
 
     Parameters
     ----------
-    text : str
-        Text of the scene file.
+    path : str or path-like
+        The scene file.
     values : mapping of str to float
         Numbers [SI units] by path, such as "beam.thickness"; an infinite number is written as "inf".
+    to : str or path-like
+        The file that the text is for: names of CSV files in the text are relative to its folder.
     head : iterable of str
         Sentences to write as comments at the start of the file.
 
     Raises
     ------
     ConfigError
-        If a number has no line of its own that could be replaced, because it is an entry of a list or the
-        factor "scale" of a property along the beam.
+        If the file cannot state a number beside its other keys, such as the factor "scale" of a property
+        along the beam, or the value of a property that is a column of stations.
     """
-    lines = text.splitlines()
-    for path, value in values.items():
-        table, _, key = path.rpartition(".")
-        if "[" in path or ".scale." in path:
-            said = (
-                f"{path}: no line of the file holds this number alone; write it by hand, {value:.{_DIGITS}g}"
-            )
-            raise ConfigError("scene", [said], [path])
-        _put(lines, table, key, f"{key} = {_written(path, value)}")
+    text = read(path)
+    tables = parse(text, str(path))
+    asked = ", ".join(f"{name} = {_written(name, value)}" for name, value in values.items())
+    said = f"{asked}: the file cannot state this beside its other keys; write the scene by hand"
+    refusal = ConfigError(str(path), [said])
+    if any("[" in name and part_at(tables, name) is None for name in values):  # a list that is not there
+        raise refusal
+    named = {key: name for key in _NAMES_OF_FILES if isinstance(name := part_at(tables, key), str)}
+    entries: dict[str, Any] = {name: _written(name, value) for name, value in values.items()}
+    entries |= {
+        key: os.path.relpath(Path(path).parent / name, Path(to).parent) for key, name in named.items()
+    }
+    wanted, lines = with_parts(tables, entries), text.splitlines()
+    for name, entry in entries.items():
+        table, _, key = name.rpartition(".")
+        _put(lines, table, key, f"{key} = {toml_value(entry)}")
+    body = "\n".join(lines) + "\n"
+    if _tables_in(body) != wanted:
+        body = toml_of(wanted)
+    try:
+        written = with_numbers(_scene_of(wanted, to), values)
+    except ValueError:
+        written = None
+    if written != with_numbers(_scene_of(tables, path), values):
+        raise refusal
     comments = [f"# {''.join(c if c.isprintable() else ' ' for c in said)}" for said in head]
-    return "\n".join([*comments, *lines]) + "\n"
+    return "\n".join([*comments, body])
 
 
-def _written(path: str, value: float) -> str:
-    """Format a number in the notation of files: a text with a unit."""
+def _written(path: str, value: float) -> str | float:
+    """Return a number in the notation of files: a text with a unit, or a bare number."""
     if math.isinf(value):
-        return '"inf"'
-    unit = unit_of(path)
-    return f'"{value:.{_DIGITS}g} {unit}"' if unit else f"{value:.{_DIGITS}g}"
+        return "inf"
+    text, unit = f"{value:.{_DIGITS}g}", unit_of(path)
+    return f"{text} {unit}" if unit else float(text)
+
+
+def _tables_in(text: str) -> dict[str, Any] | None:
+    """Return the tables in a TOML text; None if it is not valid."""
+    try:
+        return parse(text, "scene")
+    except ConfigError:
+        return None
 
 
 def _put(lines: list[str], table: str, key: str, line: str) -> None:
@@ -324,6 +359,11 @@ def load_scene(path: str | PathLike[str]) -> Scene:
             raise
         hint = f"a blade of another program is read by beamdyn import {path} -o scene.toml"
         raise ConfigError(str(path), ["; ".join([*error.mistakes, hint])]) from None
+    return _scene_of(data, path)
+
+
+def _scene_of(data: dict[str, Any], path: str | PathLike[str]) -> Scene:
+    """Make a scene from the tables of a file, and from the CSV files that they name."""
     return scene_from_dict(with_record_file(with_station_file(data, path), path), str(path))
 
 

@@ -193,7 +193,7 @@ def sections_at(
         assert rectangle is not None, "camber of layers is refused beforehand"
         curvature = _with_camber(curvature, rectangle, beam.length, xi)
         of_free = np.concatenate([of_free, np.zeros((*of_free.shape[:2], 1))], axis=2)
-    modulus = np.nan if rectangle is None or rectangle.factors else rectangle.youngs_modulus
+    modulus = np.nan if rectangle is None else rectangle.modulus_of_stress
     if youngs_modulus is not None:
         modulus = positive("youngs_modulus", youngs_modulus, "Pa")
     loads = curvature.shape[2]

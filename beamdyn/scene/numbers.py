@@ -163,7 +163,7 @@ _POINT_LISTS = {"mass": "beam.point_masses", "spring": "beam.point_springs"}
 def number_at(scene: Scene, path: str) -> float | None:
     """Get the number of a path in a scene: None if the scene lacks it, nan if it varies along the beam."""
     if path.startswith(SCALE):
-        return 1.0
+        return None if _why_no_factor(scene.beam, path.removeprefix(SCALE)) else 1.0
     if path.startswith("beam.tip.") and scene.beam.tip is None:
         return part_at(TipMass(0.0), path.removeprefix("beam.tip."))
     value = part_at(*_holder(scene, path))
@@ -209,6 +209,8 @@ def with_numbers(scene: Scene, values: Mapping[str, float]) -> Scene:
         if path != SPEED and not path.startswith(("beam.", _HARVESTER))
     }
     for path in values:
+        if path.startswith(SCALE) and (why := _why_no_factor(scene.beam, path.removeprefix(SCALE))):
+            raise InvalidValue(path, values[path], *why)
         if ("[" not in path and not _is_of_a_part(path)) or number_at(scene, path) is not None:
             continue
         alike = [
@@ -287,10 +289,20 @@ def _check_section(beam: Beam, section: Mapping[str, float], values: Mapping[str
         raise InvalidValue(f"beam.{name}", value, bound, "vary beam.bending_stiffness or the like")
 
 
+def _why_no_factor(beam: Beam, name: str) -> tuple[str, str] | None:
+    """Return why a property of a beam, or a side, takes no factor, and a remedy; None if it takes one."""
+    if beam.matrices is not None:
+        return "the beam's properties follow from its 6 x 6 section matrices", "change the matrices instead"
+    if name in PROPERTY_UNITS and getattr(beam, name) is None:
+        return "the beam has no such property", "give it one"
+    if name in PROPERTY_UNITS and beam.electrodes is not None:
+        remedy = "vary beam.density, beam.youngs_modulus or a side"
+        return "layers need a beam with the properties of its rectangular section", remedy
+    return None
+
+
 def _scaled(beam: Beam, name: str, factor: float) -> Beam:
     """Multiply a property of the beam, or, if `name` is a side, stretch its sections in that direction."""
-    if name in PROPERTY_UNITS and getattr(beam, name) is None:
-        raise InvalidValue(SCALE + name, factor, "the beam has no such property", "give it one")
     factor = positive(SCALE + name, factor)
     if beam.section is not None and name in (*SIDES, *beam.section.properties):
         section = beam.section.scaled(name, factor)

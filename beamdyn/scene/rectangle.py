@@ -50,6 +50,8 @@ _REACH_OF_WIDTH, _REACH_OF_THICKNESS = 0.195, 0.54
 _LONGEST_REACH = 0.7
 _POINTS_OF_WARPING, _TERMS_OF_WARPING = 40, 12
 _UNCHANGED = 1e-12  # distance of a factor from 1 that is no change: rounding of a product may cause it
+# Stiffnesses by which normal strain follows from the loads.
+_OF_MODULUS = {"bending_stiffness", "second_bending_stiffness", "axial_stiffness"}
 _ZETA_5 = 1.036927755143369926  # 1 + 1/2^5 + 1/3^5 + ...; scipy.special is slow to import
 SIDES = {"width": "m", "thickness": "m"}
 SECTION_UNITS = SIDES | {"youngs_modulus": "Pa", "density": "kg/m3", "poissons_ratio": ""}
@@ -118,6 +120,14 @@ class Rectangle:
         others = tuple(each for each in self.factors if each[0] != name)
         changed = () if abs(product - 1) < _UNCHANGED else ((name, product),)
         return replace(self, factors=others + changed)
+
+    @property
+    def modulus_of_stress(self) -> float:
+        """Young's modulus by which stress follows from strain [Pa]; nan where a stiffness has a factor.
+
+        The modulus or the shape of the section may be the cause of such a factor.
+        """
+        return np.nan if _OF_MODULUS & dict(self.factors).keys() else self.youngs_modulus
 
     @cached_property
     def torsion_factor(self) -> Profile:

@@ -133,10 +133,10 @@ def draw(scene: Scene) -> RotorDrawing:
     beam, mount = scene.beam, scene.mount
     inner = np.array(beam.breakpoints[1:-1])  # sections may jump at breakpoints: both sides are drawn
     xi = np.unique(np.concatenate([np.linspace(0, 1, _STATIONS), inner, np.nextafter(inner, 0)]))
-    if beam.section is None:
+    if beam.strip is None:
         sides = np.full((len(xi), 2), _UNKNOWN * beam.length)
     else:
-        sides = np.stack([beam.section.thickness(xi), beam.section.width(xi)], axis=1)
+        sides = np.stack([beam.strip.thickness(xi), beam.strip.width(xi)], axis=1)
     angle = mount.bending_angle + (0.0 * xi if beam.twist is None else np.asarray(beam.twist(xi)))
     depth = sides[:, 0] * np.abs(np.cos(angle)) + sides[:, 1] * np.abs(np.sin(angle))
     magnification = float(max(1, round(1 / round_below(float(depth.max()) / (_SEEN * beam.length)))))
@@ -152,7 +152,7 @@ def draw(scene: Scene) -> RotorDrawing:
         precone=mount.precone,
         length=beam.length,
         magnification=magnification,
-        section_known=beam.section is not None,
+        section_known=beam.strip is not None,
         outline=np.vstack([axis + edge, (axis - edge)[::-1]]),
         section=np.array([thick + wide, wide - thick, -thick - wide, thick - wide]),
         provenance=Provenance.since(start, "undeformed", "none: it is drawn from the scene"),

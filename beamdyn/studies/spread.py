@@ -322,7 +322,7 @@ def nominal_value(scene: Scene, name: str, speed: float) -> float:
         return speed
     value = number_at(scene, name)
     key = name.removeprefix("beam.")
-    if key in SECTION_UNITS and scene.beam.section is None:
+    if key in SECTION_UNITS and number_at(scene, "beam.density") is None:
         bound = "the properties of the beam are not those of a rectangular section"
         raise InvalidValue("spread", name, bound, "give a spread of beam.bending_stiffness or the like")
     if value is None:

@@ -12,8 +12,9 @@ from typing import Any
 
 from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.inputs import Input, describe
+from beamdyn.common.edge.toml_text import toml_value
 from beamdyn.common.inputs.described import described_hints, description
-from beamdyn.common.screens.form_entries import Entries, entries_of, tables_of, toml_value
+from beamdyn.common.screens.form_entries import Entries, entries_of, tables_of
 from beamdyn.common.screens.lists import Cell, Item, ListGroup, Lists
 from brakes.config.mechanism import SECTIONS, inputs_of_tables, mechanism_from_dict
 from brakes.planar import GROUND, JOINTS, LOADS, Mechanism, Part

@@ -16,9 +16,10 @@ from beamdyn.app.analysis_screen import analysis_screen, first_entries
 from beamdyn.app.deck_screen import DECK
 from beamdyn.app.program import BEAMDYN, SCENE, SHOWN
 from beamdyn.app.scene_form import ASIDE, inputs_of
+from beamdyn.common.edge.toml_text import toml_of
 from beamdyn.common.edge.units import InvalidInput
 from beamdyn.common.inputs.checks import InvalidValue
-from beamdyn.common.screens.form_entries import options_of, tables_of, toml_of
+from beamdyn.common.screens.form_entries import options_of, tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 
 ROOT = Path(__file__).parents[2]

@@ -11,8 +11,9 @@ from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.input_sweep import sweep_csv
 from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.edge.rendering import csv_text, html, png, svg
+from beamdyn.common.edge.toml_text import toml_of
 from beamdyn.common.plots.curves import sweep_figure
-from beamdyn.common.screens.form_entries import by_field, entries_of, in_unit, tables_of, toml_of
+from beamdyn.common.screens.form_entries import by_field, entries_of, in_unit, tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_tasks import drawn, report_of
 from brakes.app.bases import base

@@ -7,7 +7,8 @@ import pytest
 
 from beamdyn.common.edge.config import ConfigError, parse
 from beamdyn.common.edge.rendering import html, svg
-from beamdyn.common.screens.form_entries import entries_of, tables_of, toml_of
+from beamdyn.common.edge.toml_text import toml_of
+from beamdyn.common.screens.form_entries import entries_of, tables_of
 from beamdyn.common.screens.open_document import OpenDocument
 from beamdyn.common.screens.page_tasks import drawn, inputs_html
 from brakes.app.program import BRAKES, CALIPER, MECHANISM

@@ -211,6 +211,17 @@ def test_modes_that_cross_have_none():
     assert any("crossing" in each for each in found.warnings)
 
 
+def test_a_tapered_strip_with_layers_has_those_of_its_section():
+    """Its properties follow from the section and take no factors; both densities scale all of the mass."""
+    strip = bd.Beam.rectangular(0.05, 0.01, bd.Table([0, 0.8, 1], [2e-4, 2e-4, 1e-4]), 200e9, 7850.0)
+    layers = bd.Harvester(1.5e-4, 7750.0, d31=-171e-12, s11e=1 / 61e9, eps33t=15.33e-9, end=0.03)
+    found = bd.frequency_sensitivities(bd.Scene(layers.on(strip), bd.Mount(0.2)))
+    both = 7850.0 * found.by("beam.density") + 7750.0 * found.by("harvester.density")
+    np.testing.assert_allclose(both / found.value, -0.5, rtol=1e-9)
+    assert np.isfinite(found.by("beam.scale.thickness")).all()
+    assert "beam.scale.mass_per_length" not in [each.name for each in found.inputs]
+
+
 def test_a_number_that_cannot_change_alone_has_none():
     body = bd.TipMass(
         0.1, 0.0, 1e-4, 1e-4, 0.0

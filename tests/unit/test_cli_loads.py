@@ -110,6 +110,14 @@ def test_mistakes(run, options, code, said):
     assert said in " ".join(err.split())
 
 
+def test_stresses_of_a_beam_of_stiffnesses(run, tmp_path):
+    options = ("--speed", "1 rad/s", "--points", "1:0 mm", "--json", to := tmp_path / "loads.json")
+    assert run(beam := EXAMPLES / "bir.toml", *options, "--youngs-modulus", "70 GPa")[0] == DONE
+    loads = bd.load(to)
+    np.testing.assert_allclose(loads.stress, 70e9 * loads.strain, rtol=1e-14)
+    assert run(beam, "--youngs-modulus", "-70 GPa")[0] == BAD_INPUT
+
+
 @pytest.mark.slow
 def test_the_largest_strain_on_a_rough_road_as_the_page_prints_it(monkeypatch, finished):
     page = (EXAMPLES.parent / "docs" / "loads.md").read_text(encoding="utf-8")

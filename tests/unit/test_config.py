@@ -12,8 +12,9 @@ from numpy.polynomial import Polynomial
 from beamdyn.app.scene_form import inputs_of
 from beamdyn.common.edge.inputs import Quantity, Section, describe
 from beamdyn.common.edge.toml_columns import read_columns
+from beamdyn.common.edge.toml_text import toml_of
 from beamdyn.common.edge.units import InvalidInput, quantity
-from beamdyn.common.screens.form_entries import entries_of, tables_of, toml_of
+from beamdyn.common.screens.form_entries import entries_of, tables_of
 from beamdyn.files.scene_inputs import ENTRIES, PLACES, SceneInput
 from beamdyn.files.scenes import load_scene, parse_scene, scene_from_dict
 from beamdyn.scene.beam import Beam, PointMass, TipMass

@@ -13,6 +13,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import beamdyn as bd
+from beamdyn.analyses.results.cautions import notes_of
 from beamdyn.analyses.results.of_modes import rotor_csv
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.drawing.label_places import LabelRequest, Obstacles, place_labels
@@ -429,6 +430,16 @@ def test_a_drawn_rotor_is_saved_and_loaded(tmp_path):
     again = bd.load(tmp_path / "rotor.json")
     np.testing.assert_array_equal(again.outline, made.outline)
     assert again.svg() == made.svg()
+
+
+def test_layers_are_drawn_with_the_strip():
+    made = bd.draw(bd.load_scene("examples/bimorph.toml"))
+    assert made.section_known and made.warnings == ()
+    assert np.ptp(made.section[:, 0]) == pytest.approx(0.2e-3 + 2 * 0.15e-3, rel=1e-12)
+
+
+def test_no_note_on_the_answer_stands_below_an_undeformed_rotor():
+    assert not notes_of(bd.draw(bd.load_scene("examples/harvester_oblique.toml")))
 
 
 def test_a_jump_of_thickness_is_drawn_as_a_step():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +11,10 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.cli.commands import main
-from beamdyn.files.scenes import parse_scene, with_numbers_in_text
+from beamdyn.common.edge.config import ConfigError
+from beamdyn.files.scenes import load_scene, parse_scene, with_numbers_in_file
+from beamdyn.scene.numbers import with_numbers
+from tests.unit.toml_scenes import STRIP_TOML
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCENE = str(EXAMPLES / "tyre_harvester.toml")
@@ -106,14 +110,75 @@ def test_mistakes_are_refused(words, said, finished):
     assert said in " ".join(finished(main(words), 2).err.split())
 
 
-def test_numbers_are_put_into_the_text_of_a_scene():
-    text = Path(SCENE).read_text()
+def test_numbers_are_put_into_the_text_of_a_scene(tmp_path):
     values = {"beam.thickness": 0.19e-3, "beam.tip.mass": 2e-5, "mount.root_stiffness": np.inf}
-    changed = with_numbers_in_text(text, values, ["found"])
+    changed = with_numbers_in_file(SCENE, values, tmp_path / "found.toml", ["found"])
     scene = parse_scene(changed)
     assert scene.beam.tip is not None
     np.testing.assert_allclose([scene.beam.tip.mass, scene.mount.root_stiffness], [2e-5, np.inf], rtol=1e-9)
     assert changed.count("thickness") == 1
     assert "# of steel" in changed
-    with pytest.raises(ValueError, match="no line of the file holds this number alone"):
-        with_numbers_in_text(text, {"beam.point_mass[0].mass": 1.0})
+
+
+ROWS = """
+stations = [
+  ["x/L", "width [mm]"],
+  [0, 10],
+  [1, 8]
+]
+"""
+WHEEL = """
+[motion]
+kind = "rolling"
+rolling_radius = "0.3 m"
+rotation = { speed = "20 m/s" }
+road = { wavelength = "0.3 m", height = "1 mm" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "path", "value"),
+    [
+        ('tip = { mass = "1 g" }\n[mount]\nradius = "0.2 m"\n', "beam.tip.mass", 2e-3),
+        ('tip.mass = "1 g"\n[mount]\nradius = "0.2 m"\n', "beam.tip.mass", 2e-3),
+        ('[mount]\nradius = "0.2 m"\n[[beam.point_mass]]\nposition = "20 mm"\nmass = "1 g"\n',
+         "mount.setting_angle", 0.5),
+        ('[mount]\nradius = "0.2 m"\n[[beam.point_mass]]\nposition = "20 mm"\nmass = "1 g"\n',
+         "beam.point_mass[0].mass", 2e-3),
+        ('[mount]\nradius = "0.2 m"\n' + WHEEL, "motion.road.height", 2e-3),
+        ('"poissons_ratio" = 0.3\n[mount]\nradius = "0.2 m"\n', "beam.poissons_ratio", 0.25),
+    ],
+)  # fmt: skip
+def test_numbers_are_put_into_a_scene_in_any_notation(more, path, value, tmp_path):
+    (tmp_path / "scene.toml").write_text(STRIP_TOML + more)
+    changed = with_numbers_in_file(tmp_path / "scene.toml", {path: value}, tmp_path / "found.toml")
+    assert parse_scene(changed) == with_numbers(parse_scene(STRIP_TOML + more), {path: value})
+
+
+def test_rows_of_a_table_are_no_heads(tmp_path):
+    text = STRIP_TOML.replace('width = "10 mm"', ROWS) + '[mount]\nradius = "0.2 m"\n'
+    (tmp_path / "scene.toml").write_text(text)
+    changed = with_numbers_in_file(tmp_path / "scene.toml", {"beam.density": 8e3}, tmp_path / "found.toml")
+    assert parse_scene(changed) == with_numbers(parse_scene(text), {"beam.density": 8e3})
+
+
+def test_files_that_a_scene_names_are_found_from_another_folder(tmp_path):
+    blade = EXAMPLES / "blade_of_stations.toml"
+    (found := tmp_path / "found.toml").write_text(with_numbers_in_file(blade, {"mount.radius": 2.0}, found))
+    assert load_scene(found) == with_numbers(load_scene(blade), {"mount.radius": 2.0})
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("beam.scale.mass_per_length", 1.1),  # no key
+        ("beam.bending_stiffness", 2e-3),  # beside the sides of a section
+        ("tip_load.force[0]", 1.5),  # of a list that is not there
+        ("motion.rolling_radius", 0.31),  # from which the speed in the file follows
+    ],
+)
+def test_numbers_that_a_file_cannot_state_are_refused(path, value, tmp_path):
+    text = f'{STRIP_TOML}[mount]\nradius = "0.2 m"\n{WHEEL}'
+    (tmp_path / "scene.toml").write_text(text)
+    with pytest.raises(ConfigError, match=f"{re.escape(path)} = {value}.* cannot state this beside"):
+        with_numbers_in_file(tmp_path / "scene.toml", {path: value}, tmp_path / "found.toml")

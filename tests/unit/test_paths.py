@@ -73,3 +73,30 @@ def test_what_varies_along_the_beam_is_no_number():
     scene = replace(SCENE, beam=tapered)
     assert np.isnan(number_at(scene, "beam.thickness")) and number_at(scene, "beam.width") == 0.01
     assert number_at(scene, "beam.tip.mass") == 0.0 and number_at(scene, "beam.twist") is None
+
+
+LAYERS = bd.Harvester(1.5e-4, 7750.0, d31=-171e-12, s11e=1 / 61e9, eps33t=15.33e-9, end=0.03)
+STRIP = bd.Beam.rectangular(0.05, 0.01, bd.Table([0, 0.8, 1], [2e-4, 2e-4, 1e-4]), 200e9, 7850.0)
+WITH_LAYERS = bd.Scene(LAYERS.on(STRIP), bd.Mount(0.2))
+
+
+@pytest.mark.parametrize(
+    ("scene", "name", "why"),
+    [
+        (WITH_LAYERS, "mass_per_length", "layers need .*; vary beam.density"),
+        (SCENE, "torsion_stiffness", "the beam has no such property"),
+        (bd.load_scene("examples/iea_15_blade.toml"), "bending_stiffness", "6 x 6 section matrices"),
+        (bd.load_scene("examples/iea_15_blade.toml"), "thickness", "6 x 6 section matrices"),
+    ],
+)
+def test_what_takes_no_factor(scene, name, why):
+    path = f"beam.scale.{name}"
+    assert number_at(scene, path) is None
+    with pytest.raises(InvalidValue, match=f"{path} = 1.1: .*{why}"):
+        with_numbers(scene, {path: 1.1})
+
+
+def test_sections_under_layers_take_factors():
+    assert number_at(WITH_LAYERS, "beam.scale.thickness") == 1.0
+    thicker = with_numbers(WITH_LAYERS, {"beam.scale.thickness": 1.1}).beam.electrodes.bare.section.thickness
+    assert thicker(0.5) == pytest.approx(2.2e-4, rel=1e-14)

@@ -15,6 +15,7 @@ from beamdyn.loads.load_path import largest_per_coordinate
 from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.stations import mode_error, sections_at, stations_at
 from beamdyn.modes.modal.model import ModalBasis
+from beamdyn.scene.numbers import with_numbers
 from benchmarks import loads as loads_measured
 
 LENGTH, WIDTH, THICK, E, RHO, G = 0.5, 0.02, 0.004, 200e9, 7800.0, 9.81
@@ -326,6 +327,24 @@ def test_what_a_beam_of_stiffnesses_lacks():
     assert np.isnan(bending.stress).all()
     known = bd.static_loads(bd.Scene(fibre, OUTWARD, gravity=G), 5.0, youngs_modulus=E)
     assert known.stress == pytest.approx(E * known.strain, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("name", "known"),
+    [
+        ("mass_per_length", True),
+        ("shear_stiffness", True),
+        ("bending_stiffness", False),
+        ("axial_stiffness", False),
+    ],
+)
+def test_stresses_of_a_scaled_property(name, known):
+    """Young's modulus is in doubt where a stiffness by which strain follows has a factor, and only there."""
+    ratio = replace(BEAM.section, poissons_ratio=0.3)
+    scene = bd.Scene(BEAM.with_section(ratio), OUTWARD, gravity=G)
+    loads = bd.static_loads(with_numbers(scene, {f"beam.scale.{name}": 1.1}), 5.0)
+    wanted = E * loads.strain if known else np.full_like(loads.strain, math.nan)
+    np.testing.assert_allclose(loads.stress, wanted, rtol=1e-14)
 
 
 def test_statics_do_not_ask_for_damping_and_say_what_auto_adds():

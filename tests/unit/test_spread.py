@@ -115,6 +115,12 @@ def test_a_property_that_varies_has_a_factor():
     assert np.isfinite(bd.spread(scene, {"beam.scale.thickness": "+-1%"}, **FEW).indices.total).all()
 
 
+def test_the_strip_under_layers_has_a_section():
+    layered = bd.load_scene("examples/bimorph.toml")
+    made = bd.spread(layered, {"beam.density": "+-2%"}, **FEW)
+    assert made.inputs[0].nominal == 7850.0 and np.isfinite(made.indices.total).all()
+
+
 def test_samples_that_are_no_power_of_two():
     found = bd.spread(SCENE, {"beam.thickness": "+-2%"}, samples=200, modes=1)
     assert found.samples == 256

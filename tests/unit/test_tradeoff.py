@@ -143,6 +143,11 @@ def test_more_harmonics_are_better():
     assert (np.diff(found[above]) < 0).all()
 
 
+def test_one_speed_is_named():
+    title = harmonics_diagram(ROLLING, np.array([40.0]), 2, budget=0.1).title
+    assert title == "steady response at 40 rad/s, number of harmonics"
+
+
 def test_nothing_is_measured_where_nothing_moves():
     still = bd.Scene(HARVESTER.beam, bd.Mount(0.0), bd.SteadyRotation(0.0))
     assert integrators_diagram(still, 0.1, 1, budget=0.5).skipped == ("nothing moves the beam",)

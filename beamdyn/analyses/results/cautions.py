@@ -61,8 +61,10 @@ def notes_of(result: Any) -> list[str]:
     """Return the notes on a result in pictures and CSV files.
 
     The note is "with large deflection" if the scene models it; else the notes state that the result is
-    outside linear theory, or that its model error is large.
+    outside linear theory, or that its model error is large.  A drawing of the undeformed rotor has no notes.
     """
+    if isinstance(result, bd.RotorDrawing):
+        return []
     scene = getattr(result, "scene", None)
     if scene is not None and scene.physics.large_deflection:
         return ["with large deflection"]

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from types import MappingProxyType
@@ -16,6 +15,7 @@ from beamdyn.common.drawing.text_width import symbol_html
 from beamdyn.common.edge.config import ConfigError, said_of
 from beamdyn.common.edge.file_words import say
 from beamdyn.common.edge.inputs import Input, Lines, Quantity, parts_of, path_of
+from beamdyn.common.edge.toml_text import lined, toml_value
 from beamdyn.common.edge.units import show
 from beamdyn.common.inputs.checks import InvalidValue, reason_of
 from beamdyn.common.words import name_in_words
@@ -47,26 +47,10 @@ def entries_of(tables: Mapping[str, Any], inputs: Sequence[Input]) -> Entries:
             if isinstance(value, dict) and path not in leaves:
                 flatten(value, f"{path}.")
             else:
-                found[path] = value if isinstance(value, str) else _lined(value)
+                found[path] = value if isinstance(value, str) else lined(value)
 
     flatten(tables, "")
     return found
-
-
-def _lined(value: Any) -> str:
-    """Return a value as TOML; a list of tables, or of rows of numbers, has one line per item.
-
-    A point such as ["26.9 mm", "4 mm"] counts as a list of texts, not of numbers; thus a list of points has
-    only one line.
-    """
-    rows = _is_list_of(list, value) and any(isinstance(cell, int | float) for cell in value[-1])
-    if rows or _is_list_of(dict, value):
-        return "[{}]".format(",\n ".join(toml_value(item) for item in value))
-    return toml_value(value)
-
-
-def _is_list_of(kind: type, value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and all(isinstance(item, kind) for item in value)
 
 
 def has_rows(entry: Input) -> bool:
@@ -122,43 +106,6 @@ def _value(text: str, entry: Input | None) -> Any:
 def _takes_numbers(entry: Input) -> bool:
     """Return whether the input may be a number, even if it offers words to choose from."""
     return bool({float, int} & {*parts_of(entry.kind)})
-
-
-def toml_of(tables: Mapping[str, Any]) -> str:
-    """Write tables as the text of a TOML file."""
-
-    def lines(tables: Mapping[str, Any], prefix: str) -> Iterator[str]:
-        nested = {key: value for key, value in tables.items() if isinstance(value, dict)}
-        listed = {key: value for key, value in tables.items() if _is_list_of(dict, value)}
-        for key, value in tables.items():
-            if key not in nested and key not in listed:
-                yield f"{_key(key)} = {_lined(value)}"
-        for key in (key for key in tables if key in nested or key in listed):
-            path = prefix + _key(key)
-            head = f"[{path}]" if key in nested else f"[[{path}]]"
-            for item in [nested[key]] if key in nested else listed[key]:
-                yield from ("", head, *lines(item, f"{path}."))
-
-    return "\n".join(lines(tables, "")).strip() + "\n"
-
-
-def _key(name: str) -> str:
-    """Return a TOML key, in quotes if necessary."""
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else toml_value(name)
-
-
-def toml_value(value: Any) -> str:
-    """Return a value as TOML text on one line."""
-    match value:
-        case bool():
-            return str(value).lower()
-        case str():
-            return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-        case list() | tuple():
-            return f"[{', '.join(toml_value(item) for item in value)}]"
-        case dict():
-            return f"{{ {', '.join(f'{_key(key)} = {toml_value(item)}' for key, item in value.items())} }}"
-    return repr(value)
 
 
 def by_field(

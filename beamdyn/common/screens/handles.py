@@ -15,10 +15,11 @@ import numpy as np
 from beamdyn.common.drawing.layout import WIDTH, Layout, Paper, Rows, lay_out
 from beamdyn.common.drawing.svg import as_file, element
 from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.toml_text import toml_value
 from beamdyn.common.edge.units import quantity
 from beamdyn.common.inputs.checks import reason_of
 from beamdyn.common.screens.compared_designs import with_ghost
-from beamdyn.common.screens.form_entries import Entries, tables_of, toml_value, units_for, usual_unit
+from beamdyn.common.screens.form_entries import Entries, tables_of, units_for, usual_unit
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen
 

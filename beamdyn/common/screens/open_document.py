@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from beamdyn.common.edge.exit_codes import NoAnswer
 from beamdyn.common.edge.file_words import on_form
 from beamdyn.common.edge.inputs import Input
+from beamdyn.common.edge.toml_text import toml_of
 from beamdyn.common.results.one_line import few_digits
-from beamdyn.common.screens.form_entries import Entries, by_field, heading_of, tables_of, toml_of
+from beamdyn.common.screens.form_entries import Entries, by_field, heading_of, tables_of
 from beamdyn.common.screens.screen_parts import KeyResult
 from beamdyn.common.screens.screens import Document, Screen
 

@@ -357,8 +357,8 @@ def _pencils(model: Model, name: str, value: float) -> _Pencils:
     """Return the equations of a model and of its coarser model, for another value of a number."""
     scene = with_numbers(model.scene, {name: value})
     if len(scene.beam.breakpoints) != len(model.scene.beam.breakpoints):
-        bound = "a point mass or spring would move away from the tip, or from a jump of the section"
-        raise InvalidValue(name, value, bound, "place the point at a small distance from there")
+        bound = "a point or an end of layers would leave the root, the tip or a jump of the section"
+        raise InvalidValue(name, value, bound, "place it at a small distance from there")
     equations = equations_near(model, scene)
     if equations.size != model.equations.size:
         bound = "the number of basis functions differs between nearby values of the number"

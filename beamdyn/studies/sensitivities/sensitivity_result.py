@@ -131,17 +131,20 @@ def _value_of(scene: Scene, path: str) -> float | None:
     """
     name = path.removeprefix("beam.")
     if name in SECTION_UNITS:
-        return number_at(scene, path) if _has_constant_section(scene) else None
+        return number_at(scene, path) if _follows_from_section(scene) else None
     if name in PROPERTY_UNITS or name in ANGLE_UNITS:
         unused = {"outer_fibre"} if scene.physics.stretch else {"outer_fibre", "axial_stiffness"}
-        follows = name not in ANGLE_UNITS and _has_constant_section(scene)
+        follows = name not in ANGLE_UNITS and _follows_from_section(scene)
         if follows or name in unused or getattr(scene.modelled_beam, name) is None:
             return None
     return number_at(scene, path)
 
 
-def _has_constant_section(scene: Scene) -> bool:
-    return not any(math.isnan(number_at(scene, f"beam.{side}") or math.nan) for side in SIDES)
+def _follows_from_section(scene: Scene) -> bool:
+    """Return whether numbers of the section stand for the properties: of constant sides, or under layers."""
+    return scene.beam.electrodes is not None or not any(
+        math.isnan(number_at(scene, f"beam.{side}") or math.nan) for side in SIDES
+    )
 
 
 def _matters(scene: Scene, path: str, value: float) -> bool:

@@ -25,7 +25,14 @@ from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.added_effects import list_effects
 from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import Scene
-from beamdyn.studies.tradeoffs.measurements import Diagram, Family, TimedCase, measure_families, number_of
+from beamdyn.studies.tradeoffs.measurements import (
+    Diagram,
+    Family,
+    TimedCase,
+    at_speeds,
+    measure_families,
+    number_of,
+)
 
 Mesh = Literal["graded", "uniform"]
 
@@ -79,13 +86,8 @@ def frequency_diagram(scene: Scene, speeds: np.ndarray, modes: int = 3, budget: 
     measurements, skipped = measure_families(
         list(_families(scene, speeds, modes)), error, resolved := float(exact.error.max()), budget
     )
-    at = (
-        f"at {speeds[0]:.6g} rad/s"
-        if len(speeds) == 1
-        else f"at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s"
-    )
     reference = f"{exact.model.discretization}; {_compare_with_bounds(exact, float(speeds[-1]), modes)}"
-    title = f"{number_of(modes, 'frequency', 'frequencies')} {at}"
+    title = f"{number_of(modes, 'frequency', 'frequencies')} {at_speeds(speeds)}"
     error_of = "the frequency with the largest relative error"
     return Diagram.make(title, error_of, reference, resolved, measurements, skipped)
 

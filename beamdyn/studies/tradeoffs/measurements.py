@@ -91,6 +91,12 @@ def number_of(number: int, one: str, many: str) -> str:
     return f"{number} {one if number == 1 else many}"
 
 
+def at_speeds(speeds: np.ndarray) -> str:
+    """Say how many speeds [rad/s] there are, and the last of them: "at 3 speeds to 100 rad/s"."""
+    many = f"{len(speeds)} speeds to " if len(speeds) > 1 else ""
+    return f"at {many}{speeds[-1]:.6g} rad/s"
+
+
 def pareto_front(measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
     """Find the Pareto front: the measurements with smaller errors than all faster ones.
 

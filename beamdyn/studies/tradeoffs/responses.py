@@ -19,6 +19,7 @@ from beamdyn.studies.tradeoffs.measurements import (
     Diagram,
     Family,
     TimedCase,
+    at_speeds,
     measure_families,
     number_of,
     remaining_budget,
@@ -254,7 +255,7 @@ def _diagram(
     """Measure steady responses of several `sizes` against a reference of size `most`."""
     start = perf_counter()
     exact = run(most)
-    title = f"steady response at {len(speeds)} speeds to {speeds[-1]:.6g} rad/s, number of {what}"
+    title = f"steady response {at_speeds(speeds)}, number of {what}"
     if not np.nanmax(exact.bound, initial=0.0):
         return Diagram.make(title, _ERROR_OF_STEADY, f"{what}={most}", 0.0, (), ("no load excites the beam",))
     cases = tuple(TimedCase(f"{what}={n}", n, lambda deadline, n=n: run(n)) for n in sizes)
@@ -273,5 +274,6 @@ def _diagram(
 
     measurements, skipped = measure_families([Family(what, cases)], error, resolved, left)
     if not exact.stable.all():
-        skipped.append(f"{(~exact.stable).sum()} of {len(speeds)} speeds, which have no steady response")
+        of_all = number_of(len(speeds), "speed", "speeds")
+        skipped.append(f"{(~exact.stable).sum()} of {of_all} without a steady response")
     return Diagram.make(title, _ERROR_OF_STEADY, f"{what}={most}", resolved, measurements, skipped)
