@@ -15,7 +15,7 @@ from cyclopts import Parameter
 from beamdyn.analyses.results.cautions import describe_choice, describe_left_out, noted, warnings_of
 from beamdyn.analyses.values import check_moves, in_unit_of
 from beamdyn.common.edge import exit_codes
-from beamdyn.common.edge.command_options import NO_FILES, Files, Outputs, on_axes, write
+from beamdyn.common.edge.command_options import NO_FILES, Files, Outputs, given_options, on_axes, write
 from beamdyn.common.edge.console import show
 from beamdyn.common.edge.html_report import Question, Report
 from beamdyn.common.edge.views import picture_of, rows_of, tables_of
@@ -277,8 +277,7 @@ class Analysis:
         for name, value in given.items():
             if is_dataclass(value):
                 hints = get_type_hints(type(value), include_extras=True)
-                of_group: Mapping[str, Any] = getattr(value, "options", vars(value))
-                options |= {each: (of_group[each], hints[each]) for each in of_group}
+                options |= {each: (own, hints[each]) for each, own in given_options(value).items()}
             else:
                 options[name] = value, self.options[name].annotation
         written = {name for name, (_, annotation) in options.items() if WRITTEN in _extras(annotation)}
