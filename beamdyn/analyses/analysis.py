@@ -5,7 +5,6 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
-from enum import Enum, auto
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
@@ -36,15 +35,8 @@ Physics = Annotated[
 ]
 
 
-class Mark(Enum):
-    """The role of an option: an output file, a choice of what a picture shows, or a second input file."""
-
-    WRITTEN = auto()
-    DRAWN = auto()
-    READ_SECOND = auto()
-
-
-WRITTEN, DRAWN, READ_SECOND = Mark
+# Roles of an option, in its annotation: an output file, a choice of what pictures show, a second input file.
+WRITTEN, DRAWN, READ_SECOND = "written", "drawn", "read second"
 
 
 def _option(name: str) -> str:
