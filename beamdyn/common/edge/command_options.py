@@ -9,7 +9,6 @@ import os
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields, is_dataclass
-from functools import partial
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter, Token
 
 from beamdyn.common.results.files import check_writable, same_file, write_text
-from beamdyn.common.results.pictures import Axes, Figure, figure_of, save_figure
+from beamdyn.common.results.pictures import Figure, save_figure
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 
 if TYPE_CHECKING:
@@ -179,11 +178,6 @@ def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
     from beamdyn.common.edge.rendering import csv_text
 
     write_text(path, csv_text(rows, "\t" if path.suffix.lower() == ".tsv" else ","))
-
-
-def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
-    """Return a function that makes a figure, and calls `draw` with the axes of this figure."""
-    return partial(figure_of, draw)
 
 
 def _named_by(scene: Path) -> list[Path]:
