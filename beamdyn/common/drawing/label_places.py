@@ -30,7 +30,6 @@ _TURNED = 9.0  # cost of a direction at right angles to the preferred one [pt]
 _NEXT = 5.0  # additional cost of each further anchor of a label, from the second one on [pt]
 _COVERED = 120.0  # cost of a candidate place that lines of the drawing cover completely [pt]
 _FIRST = 40  # number of cheapest candidate places of a label that are tried first
-_TRIED = 30  # number of a label's candidate places for which the program tries to move another label away
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,6 +161,21 @@ class _Candidates:
         box = self.boxes[i]
         return Place((box[:2] + box[2:]) / 2, self.anchors[i], float(self.distances[i]), float(self.costs[i]))
 
+    def first_free(self, boxes: np.ndarray, leaders: np.ndarray) -> int | None:
+        """Return the index of the cheapest candidate that meets no label; None if there is none.
+
+        The labels that have a place already are given by their boxes (n, 4), with the space around them, and
+        by their leaders (m, 4).
+        """
+        for count in (_FIRST, None):
+            own = self.boxes[:count]
+            meets = np.array(_overlap(own, boxes).any(axis=1) | _crossing(leaders, own).any(axis=0))
+            far = np.flatnonzero(self.distances[:count] > FAR)
+            meets[far] |= _crossing(self.leaders[far], boxes).any(axis=1)
+            if not meets.all():
+                return int(meets.argmin())
+        return None
+
 
 _ANGLES = 2 * np.pi * np.arange(_TURNS) / _TURNS
 _WAYS = np.stack([np.cos(_ANGLES), np.sin(_ANGLES)], axis=-1)
@@ -237,56 +251,6 @@ def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates
     return _Candidates(boxes, every.anchors[of_anchor], distances, cost[order])
 
 
-class _Chosen:
-    """The labels that are placed so far, and the index of the candidate that each label uses."""
-
-    def __init__(self, candidates: Sequence[_Candidates]) -> None:
-        self._of = candidates
-        self._boxes = np.full((len(candidates), 4), np.nan)
-        self._leaders = np.full((len(candidates), 4), np.nan)
-        self.choice: dict[int, int] = {}
-
-    def take(self, label: int, candidate: int) -> None:
-        of = self._of[label]
-        self.choice[label] = candidate
-        self._boxes[label] = of.boxes[candidate] + (-_APART, -_APART, _APART, _APART)
-        far = of.distances[candidate] > FAR
-        self._leaders[label] = of.leaders[candidate] if far else np.nan
-
-    def leave(self, label: int) -> None:
-        del self.choice[label]
-        self._boxes[label] = self._leaders[label] = np.nan
-
-    def in_the_way(self, label: int, count: int | None) -> np.ndarray:
-        """Return whether each candidate of a label collides with each label: shape (candidates, labels).
-
-        The candidates are the first `count`; all if it is None.
-        """
-        of = self._of[label]
-        boxes = of.boxes[:count]
-        found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)
-        others = np.array([other for other in self.choice if other != label], dtype=int)
-        found[:, others] = _overlap(boxes, self._boxes[others])
-        led = others[np.isfinite(self._leaders[others, 0])]
-        if len(led):
-            found[:, led] |= _crossing(self._leaders[led], boxes).T
-        far = np.flatnonzero(of.distances[:count] > FAR)
-        if len(far):
-            found[np.ix_(far, others)] |= _crossing(of.leaders[far], self._boxes[others])
-        return found
-
-    def best(self, label: int, before: int | None = None) -> int | None:
-        """Return the index of a label's cheapest candidate that collides with no label; None without one.
-
-        Only the first `before` candidates count; all if it is None.
-        """
-        for count in (_FIRST, None) if before is None else (before,):
-            free = ~self.in_the_way(label, count).any(axis=1)
-            if free.any():
-                return int(free.argmax())
-        return None
-
-
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return whether each box (k, 4) overlaps each of n others (n, 4), shape (k, n), for k boxes."""
     x0, y0, x1, y1 = boxes.T[..., None]
@@ -324,19 +288,17 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
     if not requests:
         return []
     candidates = _candidates(requests, obstacles)
-    chosen = _Chosen(candidates)
-    order = sorted(range(len(requests)), key=lambda i: (-requests[i].priority, len(candidates[i].costs), i))
-    for label in order:
-        if (best := chosen.best(label)) is not None:
-            chosen.take(label, best)
-        else:
-            _displace(label, chosen, candidates)
-    for label in order:  # labels placed earlier may have moved, so a cheaper place may be free now
-        now = chosen.choice.get(label, 0)
-        if now and (best := chosen.best(label, now)) is not None:
-            chosen.take(label, best)
-    numbers = map(chosen.choice.get, range(len(requests)))
-    return [None if k is None else own.place(k) for own, k in zip(candidates, numbers, strict=True)]
+    places: list[Place | None] = [None] * len(requests)
+    boxes, leaders = np.empty((0, 4)), np.empty((0, 4))  # of the labels that have a place
+    for label in sorted(
+        range(len(requests)), key=lambda i: (-requests[i].priority, len(candidates[i].costs), i)
+    ):
+        of = candidates[label]
+        if (best := of.first_free(boxes, leaders)) is not None:
+            places[label] = of.place(best)
+            boxes = np.vstack([boxes, of.boxes[best] + (-_APART, -_APART, _APART, _APART)])
+            leaders = np.vstack([leaders, of.leaders[best : best + (of.distances[best] > FAR)]])
+    return places
 
 
 def keep_places(
@@ -376,18 +338,3 @@ def keep_places(
     meets[far] |= _crossing(leaders, apart)
     np.fill_diagonal(meets, False)
     return [*places] if obstacles.is_free(boxes).all() and not meets.any() else None
-
-
-def _displace(label: int, chosen: _Chosen, candidates: Sequence[_Candidates]) -> None:
-    """Place a label where another label is, if that one can move elsewhere; else leave it unplaced."""
-    found = chosen.in_the_way(label, None)
-    for candidate in np.flatnonzero(found.sum(axis=1) == 1)[:_TRIED]:
-        other = int(found[candidate].argmax())
-        before = chosen.choice[other]
-        chosen.leave(other)
-        chosen.take(label, int(candidate))
-        if (best := chosen.best(other)) is not None:
-            chosen.take(other, best)
-            return
-        chosen.leave(label)
-        chosen.take(other, before)
