@@ -29,7 +29,6 @@ _TURNS = 12  # number of directions around an anchor
 _TURNED = 9.0  # cost of a direction at right angles to the preferred one [pt]
 _NEXT = 5.0  # additional cost of each further anchor of a label, from the second one on [pt]
 _COVERED = 120.0  # cost of a candidate place that lines of the drawing cover completely [pt]
-_FIRST = 40  # number of cheapest candidate places of a label that are tried first
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,14 +166,10 @@ class _Candidates:
         The labels that have a place already are given by their boxes (n, 4), with the space around them, and
         by their leaders (m, 4).
         """
-        for count in (_FIRST, None):
-            own = self.boxes[:count]
-            meets = np.array(_overlap(own, boxes).any(axis=1) | _crossing(leaders, own).any(axis=0))
-            far = np.flatnonzero(self.distances[:count] > FAR)
-            meets[far] |= _crossing(self.leaders[far], boxes).any(axis=1)
-            if not meets.all():
-                return int(meets.argmin())
-        return None
+        own, far = self.boxes, np.flatnonzero(self.distances > FAR)
+        meets = np.array(_overlap(own, boxes).any(axis=1) | _crossing(leaders, own).any(axis=0))
+        meets[far] |= _crossing(self.leaders[far], boxes).any(axis=1)
+        return None if meets.all() else int(meets.argmin())
 
 
 _ANGLES = 2 * np.pi * np.arange(_TURNS) / _TURNS
