@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.optimize import isotonic_regression
 
 from beamdyn.common.plots.axes_and_lines import MOTION_DASHES, draw_by_plane, set_up_axes, style_by_plane
 from beamdyn.common.results.columns import DisplayUnits
@@ -256,14 +257,7 @@ def _spread(heights: Sequence[float]) -> list[float]:
     """Move ascending heights of labels as little as possible, so that the labels do not overlap.
 
     Subtract from each height its index times the least distance: these values must not descend.  The closest
-    non-descending values are found by averaging over blocks of descending values (isotonic regression by the
-    pool-adjacent-violators algorithm).
+    non-descending values are those of isotonic regression.
     """
-    blocks: list[tuple[float, int]] = []
-    for i, height in enumerate(heights):
-        blocks.append((height - i * _APART, 1))
-        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
-            (a, m), (b, n) = blocks[-2:]
-            blocks[-2:] = [((m * a + n * b) / (m + n), m + n)]
-    means = [mean for mean, size in blocks for _ in range(size)]
-    return [mean + i * _APART for i, mean in enumerate(means)]
+    least = _APART * np.arange(len(heights))
+    return (isotonic_regression(np.asarray(heights) - least).x + least).tolist()
