@@ -54,12 +54,11 @@ class LabelRequest:
 
 
 class Place(NamedTuple):
-    """A placed label: centre (2,), anchor (2,), distance between box and anchor, cost of the place [pt]."""
+    """A placed label: centre (2,), anchor (2,), and distance between its box and the anchor [pt]."""
 
     centre: np.ndarray
     anchor: np.ndarray
     distance: float
-    cost: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,16 +138,11 @@ class Obstacles:
 
 @dataclass(eq=False)
 class _Candidates:
-    """Candidate places of a label, cheapest first: boxes, anchors, distances and costs.
-
-    Before sorting, one object holds the candidates of all labels, for n pairs of label and anchor: boxes (n,
-    k, 4), anchors (n, 2), distances and costs (n, k).
-    """
+    """Free places of a label, the cheapest first: boxes (k, 4), anchors (k, 2) and distances (k,)."""
 
     boxes: np.ndarray
     anchors: np.ndarray
     distances: np.ndarray
-    costs: np.ndarray
 
     @cached_property
     def leaders(self) -> np.ndarray:
@@ -158,7 +152,7 @@ class _Candidates:
 
     def place(self, i: int) -> Place:
         box = self.boxes[i]
-        return Place((box[:2] + box[2:]) / 2, self.anchors[i], float(self.distances[i]), float(self.costs[i]))
+        return Place((box[:2] + box[2:]) / 2, self.anchors[i], float(self.distances[i]))
 
     def first_free(self, boxes: np.ndarray, leaders: np.ndarray) -> int | None:
         """Return the index of the cheapest candidate that meets no label; None if there is none.
@@ -191,17 +185,18 @@ def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[
     on_it: np.ndarray = np.hypot(*towards.T) == 0
     offsets, distances = _around(half, on_it)
     centres = (anchors[:, None, None] + offsets).reshape(len(anchors), -1, 2)
-    boxes = np.concatenate([centres - half[:, None], centres + half[:, None]], axis=2)
-    covered, free = obstacles.judge(boxes.reshape(-1, 4))
+    boxes = np.concatenate([centres - half[:, None], centres + half[:, None]], axis=2).reshape(-1, 4)
+    covered, free = obstacles.judge(boxes)
     nth = np.concatenate([np.arange(count) for count in counts])
     ways = towards / np.where(on_it, 1.0, np.hypot(*towards.T))[:, None]
     turned = np.where(on_it[:, None], _BESIDE, _TURNED * (1 - ways @ _AWAY.T))
-    costs = (_STEPS[:, None] + turned[:, None] + _NEXT * nth[:, None, None]).reshape(len(nth), -1)
-    costs = costs + _COVERED * covered.reshape(costs.shape)
-    every = _Candidates(boxes, anchors, distances.reshape(costs.shape), costs)
-    ends = np.cumsum(counts)
-    parts = [slice(start, end) for start, end in zip(ends - counts, ends, strict=True)]
-    return [_free_ones(every, free.reshape(costs.shape), part) for part in parts]
+    costs = (_STEPS[:, None] + turned[:, None] + _NEXT * nth[:, None, None]).ravel() + _COVERED * covered
+    of_anchor = np.repeat(np.arange(len(anchors)), distances[0].size)
+    of_label = np.repeat(np.arange(len(requests)), counts)[of_anchor]
+    order = np.flatnonzero(free)
+    order = order[np.lexsort((costs[order], of_label[order]))]  # by label, then by cost
+    each = np.split(order, np.searchsorted(of_label[order], np.arange(1, len(requests))))
+    return [_Candidates(boxes[some], anchors[of_anchor[some]], distances.ravel()[some]) for some in each]
 
 
 def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -230,20 +225,6 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
     corners = (half[:, None, None] + (_GAP + _STEPS[:, None, None]) / np.sqrt(2.0)) * _CORNERS
     offsets = np.concatenate([out[..., None] * _WAYS, corners], axis=2)
     return offsets, np.concatenate([distances, aside], axis=2)
-
-
-def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
-    """Select one label's free candidates, the cheapest first, from the candidates of all labels.
-
-    The slice `part` selects the label's anchors; `free` (anchors of all labels, candidates) says which are
-    free.
-    """
-    which = np.flatnonzero(free[part])
-    cost = every.costs[part].ravel()[which]
-    order = np.argsort(cost, kind="stable")
-    which, of_anchor = which[order], which[order] // free.shape[1] + part.start
-    boxes, distances = every.boxes[part].reshape(-1, 4)[which], every.distances[part].ravel()[which]
-    return _Candidates(boxes, every.anchors[of_anchor], distances, cost[order])
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -286,7 +267,7 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
     places: list[Place | None] = [None] * len(requests)
     boxes, leaders = np.empty((0, 4)), np.empty((0, 4))  # of the labels that have a place
     for label in sorted(
-        range(len(requests)), key=lambda i: (-requests[i].priority, len(candidates[i].costs), i)
+        range(len(requests)), key=lambda i: (-requests[i].priority, len(candidates[i].boxes), i)
     ):
         of = candidates[label]
         if (best := of.first_free(boxes, leaders)) is not None:
