@@ -5,8 +5,7 @@ from __future__ import annotations
 import inspect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, is_dataclass, replace
-from enum import Enum, auto
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, get_args, get_origin, get_type_hints
 
@@ -15,11 +14,12 @@ from cyclopts import Parameter
 from beamdyn.analyses.results.cautions import describe_choice, describe_left_out, noted, warnings_of
 from beamdyn.analyses.values import check_moves, in_unit_of
 from beamdyn.common.edge import exit_codes
-from beamdyn.common.edge.command_options import NO_FILES, Files, Outputs, on_axes, write
+from beamdyn.common.edge.command_options import NO_FILES, Files, Outputs, given_options, write
+from beamdyn.common.edge.config import read
 from beamdyn.common.edge.console import show
 from beamdyn.common.edge.html_report import Question, Report
 from beamdyn.common.edge.views import picture_of, rows_of, tables_of
-from beamdyn.common.results.pictures import Axes
+from beamdyn.common.results.pictures import Axes, figure_of
 from beamdyn.files.scenes import load_scene
 
 if TYPE_CHECKING:
@@ -36,15 +36,8 @@ Physics = Annotated[
 ]
 
 
-class Mark(Enum):
-    """The role of an option: an output file, a choice of what a picture shows, or a second input file."""
-
-    WRITTEN = auto()
-    DRAWN = auto()
-    READ_SECOND = auto()
-
-
-WRITTEN, DRAWN, READ_SECOND = Mark
+# Roles of an option, in its annotation: an output file, a choice of what pictures show, a second input file.
+WRITTEN, DRAWN, READ_SECOND = "written", "drawn", "read second"
 
 
 def _option(name: str) -> str:
@@ -219,8 +212,8 @@ class Analysis:
         """Analyse the scene of a file, write the requested files, and print the result."""
         given = {name: options.get(name, each.default) for name, each in self.shown.items()}
         outputs: Files = given.pop("outputs")
-        written, read, asked = self._sort(given)
-        outputs.check(file, *read, **written)
+        written, others, asked = self._sort(given)
+        outputs.check(file, *others, **written)
         for name, each in self.options.items():
             if DRAWN in _extras(each.annotation) and given[name] is not None and not outputs.draws:
                 remedy = "give --plot or --report, or leave it out"
@@ -232,7 +225,7 @@ class Analysis:
         scene = in_unit_of(scene, *(given[name] for name in self.texts))
         if given.get("physics") is not None:
             scene = replace(scene, physics=given["physics"])
-        question = Question.on_file(f"beamdyn {self.name}", file, **asked)
+        question = Question.of(f"beamdyn {self.name}", file, read(file), **asked)
         deliver(self.answer(scene, given, outputs, file=file), outputs, question)
 
     def answer(
@@ -277,8 +270,7 @@ class Analysis:
         for name, value in given.items():
             if is_dataclass(value):
                 hints = get_type_hints(type(value), include_extras=True)
-                of_group: Mapping[str, Any] = getattr(value, "options", vars(value))
-                options |= {each: (of_group[each], hints[each]) for each in of_group}
+                options |= {each: (own, hints[each]) for each, own in given_options(value).items()}
             else:
                 options[name] = value, self.options[name].annotation
         written = {name for name, (_, annotation) in options.items() if WRITTEN in _extras(annotation)}
@@ -317,7 +309,7 @@ def deliver(answer: Answer, outputs: Files, question: Question) -> None:
         If the model has no solution; raised after all files are written.
     """
     result, refusal = answer.result, answer.refusal
-    draw = picture_of(result) if answer.draw is None else on_axes(answer.draw)
+    draw = picture_of(result) if answer.draw is None else partial(figure_of, answer.draw)
     if draw is None and outputs.plot is not None:
         raise ValueError(f"--plot = {outputs.plot}: this result has no picture; give --json or --csv")
     draw = None if draw is None else noted(draw, result)

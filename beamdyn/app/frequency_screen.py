@@ -17,7 +17,7 @@ from beamdyn.app.sweeps import frequency_outputs, sweeps_of
 from beamdyn.common.drawing.shapes import Chart, ChartAxis, ChartBand, ChartCurve, ChartMark, ChartPoints
 from beamdyn.common.edge.console import table
 from beamdyn.common.plots.axes_and_lines import note_below
-from beamdyn.common.plots.campbell import Curves, plot_campbell
+from beamdyn.common.plots.campbell import Curves, plot_campbell, top_of
 from beamdyn.common.plots.plots import mark_critical
 from beamdyn.common.results.one_line import known_digits, number
 from beamdyn.common.results.pictures import new_figure
@@ -37,8 +37,6 @@ CrossingPoint = tuple[float, float, str]  # speed [rad/s], frequency [Hz], mode 
 _SPEEDS, _FEW_SPEEDS = 121, 31  # number of speeds, in a full and in a preliminary result
 _ROUGH = 1e-3  # tolerance of a preliminary result
 _NOT_MARKED = "resonance speeds are not marked: they and the frequencies were computed with different effects"
-_HEADROOM = 1.08  # height of the chart, as a multiple of the highest frequency
-_MOST_ABOVE = 2.0  # highest frequency shown, as a multiple of the highest excitation frequency
 
 
 @dataclass(frozen=True)
@@ -146,7 +144,7 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
     """Make the chart of frequencies over speed: excitation lines, crossings, margins and critical speed."""
     locus, lines, same = answer.locus, answer.lines, answer.have_same_physics
     speed, last = locus.display_units.speed_unit(), float(locus.speeds[-1])
-    top = _top(locus.frequency, [line.multiple * last / (2 * np.pi) for line in lines])
+    top = top_of(locus.frequency.T, max((line.multiple for line in lines), default=0.0) * last / (2 * np.pi))
     curves = []
     for name, frequency in zip(locus.names(), locus.frequency.T, strict=True):
         least = np.nanmin(frequency, initial=np.inf)
@@ -184,18 +182,6 @@ def chart(answer: Frequencies, _: float = 0.0) -> Sequence[Chart]:
             past if critical < last else [],
         )
     ]
-
-
-def _top(frequency: np.ndarray, ends: Sequence[float]) -> float:
-    """Return the upper limit of the frequency axis [Hz], a little above the highest mode shown.
-
-    Modes up to twice the highest of the lines' frequencies `ends` are shown, but at least the lowest mode;
-    without lines, all modes.
-    """
-    known = [float(np.nanmax(f)) for f in frequency.T if np.isfinite(f).any()]
-    fastest = max(ends, default=0.0)
-    near = [f for f in known if not fastest or f <= _MOST_ABOVE * fastest]
-    return _HEADROOM * (max(near) if near else min(known, default=fastest)) or 1.0
 
 
 def describe_margin(margin: Margin) -> str:

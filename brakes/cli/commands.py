@@ -27,6 +27,7 @@ from beamdyn.common.edge.command_options import (
     SomeFolder,
     SpreadOptions,
     VaryOptions,
+    given_options,
     write,
 )
 from beamdyn.common.edge.console import at_work, show
@@ -79,11 +80,6 @@ class FindOptions:
     find: Annotated[str | None, Parameter(show_default=False)] = None
     so_that: Annotated[str | None, Parameter(show_default=False)] = None
 
-    @property
-    def options(self) -> dict[str, object]:
-        """The options that are given, by name, for the head of a report."""
-        return {"find": self.find, "so_that": self.so_that}
-
     def check(self, **others: object) -> None:
         """Refuse --find or --so-that alone, and --find together with options on many designs."""
         if (self.find is None) != (self.so_that is None):
@@ -117,11 +113,6 @@ class Asked:
     spreading: SpreadOptions = NO_SPREAD
     finding: FindOptions = field(default_factory=FindOptions)
     what: Annotated[str | None, Parameter(show_default=False)] = None
-
-    @property
-    def options(self) -> dict[str, object]:
-        """The options that are given, by name, for the head of a report."""
-        return self.varying.options | self.spreading.options | self.finding.options | {"what": self.what}
 
     @property
     def many(self) -> str:
@@ -187,7 +178,7 @@ def run_command(
     tables, text = brake.open(file)
     if not tables:
         raise ValueError(f"{file}: it has no tables yet; `brakes keys {command}` lists them with their keys")
-    question = Question.of(f"brakes {command}", file, text, **options, **asked.options)
+    question = Question.of(f"brakes {command}", file, text, **options, **given_options(asked))
     asked.check()
     for option, path in written.items():
         if asked.many and path is not None:
@@ -300,7 +291,7 @@ def caliper(
 
     if list_:
         files = vars(outputs) | {"free-bodies": free_bodies, "animation": animation, "force": None}
-        options = files | asked.options
+        options = files | given_options(asked)
         given = {"MECHANISM": mechanism} | {f"--{name}": value for name, value in options.items()}
         for name, value in given.items():
             if value:

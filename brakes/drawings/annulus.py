@@ -14,7 +14,7 @@ from brakes.drawings.arrows import ForceArrows, rotation
 from brakes.machines import Cone, MachineResult, Plates
 from brakes.machines import Disc as DiscBrake
 
-_UP, _LEFT, _BOTH = (0.0, 1.0), (-1.0, 0.0), (1.0, -1.0)
+_BOTH = 1.0, -1.0
 
 
 # Drawings of results --------------------------------------------------------------------------------------
@@ -120,10 +120,8 @@ def plates_sketch() -> Rows:
     """Sketch the dimensions of a set of plates."""
     s = Sketch()
     _add_plates(s.shapes, Plates(0.6, 1.0, faces=4))
-    s.length("r_o", (1.5, 0.0), (1.5, 1.0), (1.0, 0.0))
-    s.length("r_i", (-0.35, 0.0), (-0.35, 0.6), _LEFT)
-    for at, x in ((1.0, 1.6), (0.6, -0.45)):
-        s.dashed((0.2, at), (x, at))
+    s.height("r_o", (0.2, 0.0), (0.2, 1.0), 1.5)
+    s.height("r_i", (0.2, 0.0), (0.2, 0.6), -0.35)
     s.arrow("P", (-0.75, 0.0), (-0.05, 0.0))
     return [[s.drawing("Plates, cut along the axis", "Plates on their axis: r_i, r_o, P")]]
 
@@ -132,11 +130,8 @@ def cone_sketch() -> Rows:
     """Sketch the dimensions of a cone."""
     s = Sketch()
     _add_cone(s.shapes, Cone(0.7, 1.0, width=0.9))
-    s.length("r_o", (-0.25, 0.0), (-0.25, 1.0), _LEFT)
-    s.length("r_i", (1.15, 0.0), (1.15, 0.7), (1.0, 0.0))
-    s.length("w", (0.0, 1.3), (0.9, 1.3), _UP)
-    for start, end in (((0, 1.0), (0, 1.38)), ((0.9, 0.7), (0.9, 1.38)), ((0, 1.0), (-0.35, 1.0))):
-        s.dashed(start, end)
-    s.dashed((0.9, 0.7), (1.25, 0.7))
+    s.height("r_o", (0.0, 0.0), (0.0, 1.0), -0.25)
+    s.height("r_i", (0.9, 0.0), (0.9, 0.7), 1.15)
+    s.width("w", (0.0, 1.0), (0.9, 0.7), 1.3)
     s.arrow("P", (-0.9, 0.0), (-0.02, 0.0))
     return [[s.drawing("Cone, cut along the axis", "A cone on its axis: r_i, r_o, w, P")]]

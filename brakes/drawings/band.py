@@ -76,10 +76,7 @@ def band_sketch() -> Rows:
     s.dashed((0.0, 0.0), rim[-1])
     s.angle("phi", (0.0, 0.0), 0.4, np.pi / 2 + float(band.wrap) / 2, np.pi / 2 - float(band.wrap) / 2)
     for symbol, at, low in (("a", first, 0.45), ("s", second, 0.45), ("c", end, 0.85)):
-        level = fulcrum - (0.0, low)
-        s.dashed(at, (at[0], level[1] - 0.08))
-        s.length(symbol, level, (at[0], level[1]), (0.0, -1.0))
-    s.dashed(fulcrum, fulcrum - (0.0, 0.95))
+        s.width(symbol, fulcrum, at, fulcrum[1] - low)
     s.arrow("P", end + np.array([0.0, 0.75]), end + np.array([0.0, 0.08]))
     s.moment("M", (0.0, 0.0), 1.15, 2.0, 1.1, "load")
     return [[s.drawing("A differential band", "A band brake: r, phi, a, s, c, P, M"), width_sketch("band")]]

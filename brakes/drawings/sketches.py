@@ -12,7 +12,7 @@ from brakes.drawings.forklift import draw_chassis
 from brakes.forklift import BENDIX_12_5, Truck
 
 _SLOPE = np.radians(14.0)
-_DOWN, _UP, _LEFT = (0.0, -1.0), (0.0, 1.0), (-1.0, 0.0)
+_UP, _LEFT = (0.0, 1.0), (-1.0, 0.0)
 
 
 # Forklift -------------------------------------------------------------------------------------------------
@@ -32,19 +32,11 @@ def _dimensions_of(t: Truck, r1: float, L: float) -> Drawing:
     s.add(Symbol("dot", cg, "weight", 7.0), Symbol("dot", load, "weight", 7.0))
     s.say("m", cg, (1.0, 1.0), "weight")
     s.say("m_L", load, (-1.0, 1.0), "weight")
-    low, lower = -0.35, -1.4
-    s.dashed((0.0, r1), (0.0, lower - 0.1))
-    s.dashed((L, 0.75 * r1), (L, lower - 0.1))
-    s.length("L", (0.0, lower), (L, lower), _DOWN)
-    s.dashed(cg, (cg[0], low - 0.1))
-    s.length("x", (0.0, low), (cg[0], low), _DOWN)
-    s.dashed(load, (load[0], low - 0.1))
-    s.length("x_L", (0.0, low), (load[0], low), _DOWN)
-    s.dashed((-2.3, r1), (2.9, r1))
-    s.length("y_L", (-1.95, r1), (-1.95, load[1]), (-1.0, 0.0))
-    s.dashed(load, (-2.1, load[1]))
-    s.length("y", (2.7, r1), (2.7, cg[1]), (1.0, 0.0))
-    s.dashed(cg, (2.8, cg[1]))
+    s.width("L", (0.0, r1), (L, 0.75 * r1), -1.4)
+    s.width("x", (0.0, r1), cg, -0.35)
+    s.width("x_L", (0.0, r1), load, -0.35)
+    s.height("y_L", (0.0, r1), load, -1.95)
+    s.height("y", (0.0, r1), cg, 2.7)
     s.length("r1", (2.7, 0.0), (2.7, r1), (1.0, 0.0))
     return s.drawing("Truck and load", "A truck with its load: L, x, y, r1, x_L, y_L")
 
@@ -70,17 +62,10 @@ def duo_servo_sketch() -> Rows:
     r, (x, y), (ax, ay) = 0.15875, (0.06155, 0.10229), (0.05304, -0.12211)
     s.length("r", (0.0, 0.0), r * np.array([-np.cos(0.5), -np.sin(0.5)]), (0.4, -1.0))
     far = 0.19
-    s.dashed((0.0, 0.0), (far + 0.05, 0.0))
-    s.dashed((x, y), (far + 0.02, y))
-    s.dashed((ax, ay), (far + 0.02, ay))
-    s.length("y_t", (far, 0.0), (far, y), (1.0, 0.0))
-    s.length("y_a", (far, 0.0), (far, ay), (1.0, 0.0))
-    s.dashed((0.0, 0.0), (0.0, 0.2))
-    s.dashed((x, y), (x, 0.2))
-    s.length("x_t", (0.0, 0.19), (x, 0.19), _UP)
-    s.dashed((0.0, 0.0), (0.0, -0.2))
-    s.dashed((ax, ay), (ax, -0.2))
-    s.length("x_a", (0.0, -0.19), (ax, -0.19), _DOWN)
+    s.height("y_t", (0.0, 0.0), (x, y), far)
+    s.height("y_a", (0.0, 0.0), (ax, ay), far)
+    s.width("x_t", (0.0, 0.0), (x, y), far)
+    s.width("x_a", (0.0, 0.0), (ax, ay), -far)
     tilt = float(BENDIX_12_5.face_tilt)  # type: ignore[arg-type]
     s.dashed((-x, y), (-x, y + 0.07))
     s.say("alpha", (-x, y) + 0.06 * np.array([-np.sin(tilt / 2), np.cos(tilt / 2)]), (-0.4, 1.0), "dimension")
@@ -147,14 +132,9 @@ def _shoe() -> Drawing:
     s.axis((0, 0))
     s.length("r", (0.0, 0.0), (-np.cos(0.5), -np.sin(0.5)), (-0.3, 1.0))
     s.arrow("P", lever - (0.6, 0.0), lever)
-    s.length("a", (-0.3, 0.0), (-0.3, force), (1.0, 0.0))
-    s.dashed((-0.4, force), lever)
-    s.dashed((-0.65, 0.0), (0.0, 0.0))
-    s.dashed((0.0, 0.0), (0.0, -1.3))
-    s.length("c", (-0.3, 0.0), (-0.3, pin[1]), (1.0, 0.0))
-    s.dashed((-0.4, pin[1]), pin)
-    s.length("b", (0.0, -1.14), (pin[0], -1.14), _DOWN)
-    s.dashed(pin, (pin[0], -1.25))
+    s.height("a", (0.0, 0.0), lever, -0.3)
+    s.height("c", (0.0, 0.0), pin, -0.3)
+    s.width("b", (0.0, 0.0), pin, -1.14)
     s.dashed((0.0, 0.0), 1.0 * rim[0])
     s.dashed((0.0, 0.0), 1.0 * rim[-1])
     s.angle("alpha1", (0.0, 0.0), 0.42, -np.pi / 2, float(start) - np.pi / 2)
@@ -188,9 +168,7 @@ def cylinder_sketch() -> Drawing:
         Outline([(0.7, 0.0), (1.3, 0.0)], "support", 4.0),
     )
     s.say("p_h", (0.35, 0.0), role="load")
-    s.dashed((-0.35, 0.25), (0.0, 0.25))
-    s.dashed((-0.35, -0.25), (0.0, -0.25))
-    s.length("d", (-0.22, -0.25), (-0.22, 0.25), (-1.0, 0.0))
+    s.height("d", (0.0, -0.25), (0.0, 0.25), -0.3)
     return s.drawing("Cylinder", "The bore of a cylinder and its pressure: d, p_h")
 
 
@@ -207,12 +185,8 @@ def _cylinder(title: str, bore: str, travel: str) -> Drawing:
         Outline([(0.45, half - 0.02), (0.45, 0.02 - half)], "contact", 4.0),
         Outline([(0.45, 0.0), (-0.45, 0.0)], "support", 4.0),
     )
-    s.dashed((1.2, half), (1.85, half))
-    s.dashed((1.2, -half), (1.85, -half))
-    s.length(bore, (1.7, -half), (1.7, half), (1.0, 0.0))
-    s.dashed((0.45, -half), (0.45, -1.1))
-    s.dashed((0.85, half), (0.85, -1.1))
-    s.length(travel, (0.45, -1.0), (0.85, -1.0), _DOWN)
+    s.height(bore, (1.2, -half), (1.2, half), 1.7)
+    s.width(travel, (0.45, -half), (0.85, half), -1.0)
     return s.drawing(title, f"{title}: bore {bore}, travel of its piston {travel}")
 
 

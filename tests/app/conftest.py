@@ -36,7 +36,7 @@ def simulate(monkeypatch, tmp_path):
         from beamdyn.common.screens.server import root_of
 
         async def main():
-            async with user_simulation(root=root_of(program, solver or AtOnce())) as first:
+            async with user_simulation(root=root_of(program, lambda: solver or AtOnce())) as first:
                 await body(clients(first))
 
         asyncio.run(main())

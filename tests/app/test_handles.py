@@ -73,7 +73,7 @@ def named(handles, label):
 
 def test_handle_is_where_the_svg_has_its_point(case):
     """The view is made from the layout; the SVG says where its points really are."""
-    root = ET.fromstring(case.sheet.text)
+    root = ET.fromstring(case.sheet.element)
     size = np.array(root.get("viewBox").split()[2:], dtype=float)
     assert case.sheet.ratio == pytest.approx(size[0] / size[1], rel=1e-6)
     grips = root.findall(f".//{SVG}circle[@class='grip']")
@@ -112,7 +112,7 @@ def test_place_and_point_are_inverse():
 
 def test_held_picture_of_the_same_design_is_the_same(case):
     held = draw_sheet(case.screen, case.answer, case.place, case.sheet.view)
-    assert held.text == case.sheet.text
+    assert held.element == case.sheet.element
 
 
 @pytest.mark.parametrize(

@@ -29,8 +29,6 @@ _TURNS = 12  # number of directions around an anchor
 _TURNED = 9.0  # cost of a direction at right angles to the preferred one [pt]
 _NEXT = 5.0  # additional cost of each further anchor of a label, from the second one on [pt]
 _COVERED = 120.0  # cost of a candidate place that lines of the drawing cover completely [pt]
-_FIRST = 40  # number of cheapest candidate places of a label that are tried first
-_TRIED = 30  # number of a label's candidate places for which the program tries to move another label away
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,12 +54,11 @@ class LabelRequest:
 
 
 class Place(NamedTuple):
-    """A placed label: centre (2,), anchor (2,), distance between box and anchor, cost of the place [pt]."""
+    """A placed label: centre (2,), anchor (2,), and distance between its box and the anchor [pt]."""
 
     centre: np.ndarray
     anchor: np.ndarray
     distance: float
-    cost: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -141,16 +138,11 @@ class Obstacles:
 
 @dataclass(eq=False)
 class _Candidates:
-    """Candidate places of a label, cheapest first: boxes, anchors, distances and costs.
-
-    Before sorting, one object holds the candidates of all labels, for n pairs of label and anchor: boxes (n,
-    k, 4), anchors (n, 2), distances and costs (n, k).
-    """
+    """Free places of a label, the cheapest first: boxes (k, 4), anchors (k, 2) and distances (k,)."""
 
     boxes: np.ndarray
     anchors: np.ndarray
     distances: np.ndarray
-    costs: np.ndarray
 
     @cached_property
     def leaders(self) -> np.ndarray:
@@ -160,7 +152,18 @@ class _Candidates:
 
     def place(self, i: int) -> Place:
         box = self.boxes[i]
-        return Place((box[:2] + box[2:]) / 2, self.anchors[i], float(self.distances[i]), float(self.costs[i]))
+        return Place((box[:2] + box[2:]) / 2, self.anchors[i], float(self.distances[i]))
+
+    def first_free(self, boxes: np.ndarray, leaders: np.ndarray) -> int | None:
+        """Return the index of the cheapest candidate that meets no label; None if there is none.
+
+        The labels that have a place already are given by their boxes (n, 4), with the space around them, and
+        by their leaders (m, 4).
+        """
+        own, far = self.boxes, np.flatnonzero(self.distances > FAR)
+        meets = np.array(_overlap(own, boxes).any(axis=1) | _crossing(leaders, own).any(axis=0))
+        meets[far] |= _crossing(self.leaders[far], boxes).any(axis=1)
+        return None if meets.all() else int(meets.argmin())
 
 
 _ANGLES = 2 * np.pi * np.arange(_TURNS) / _TURNS
@@ -182,17 +185,18 @@ def _candidates(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list[
     on_it: np.ndarray = np.hypot(*towards.T) == 0
     offsets, distances = _around(half, on_it)
     centres = (anchors[:, None, None] + offsets).reshape(len(anchors), -1, 2)
-    boxes = np.concatenate([centres - half[:, None], centres + half[:, None]], axis=2)
-    covered, free = obstacles.judge(boxes.reshape(-1, 4))
+    boxes = np.concatenate([centres - half[:, None], centres + half[:, None]], axis=2).reshape(-1, 4)
+    covered, free = obstacles.judge(boxes)
     nth = np.concatenate([np.arange(count) for count in counts])
     ways = towards / np.where(on_it, 1.0, np.hypot(*towards.T))[:, None]
     turned = np.where(on_it[:, None], _BESIDE, _TURNED * (1 - ways @ _AWAY.T))
-    costs = (_STEPS[:, None] + turned[:, None] + _NEXT * nth[:, None, None]).reshape(len(nth), -1)
-    costs = costs + _COVERED * covered.reshape(costs.shape)
-    every = _Candidates(boxes, anchors, distances.reshape(costs.shape), costs)
-    ends = np.cumsum(counts)
-    parts = [slice(start, end) for start, end in zip(ends - counts, ends, strict=True)]
-    return [_free_ones(every, free.reshape(costs.shape), part) for part in parts]
+    costs = (_STEPS[:, None] + turned[:, None] + _NEXT * nth[:, None, None]).ravel() + _COVERED * covered
+    of_anchor = np.repeat(np.arange(len(anchors)), distances[0].size)
+    of_label = np.repeat(np.arange(len(requests)), counts)[of_anchor]
+    order = np.flatnonzero(free)
+    order = order[np.lexsort((costs[order], of_label[order]))]  # by label, then by cost
+    each = np.split(order, np.searchsorted(of_label[order], np.arange(1, len(requests))))
+    return [_Candidates(boxes[some], anchors[of_anchor[some]], distances.ravel()[some]) for some in each]
 
 
 def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -221,70 +225,6 @@ def _around(half: np.ndarray, on_it: np.ndarray) -> tuple[np.ndarray, np.ndarray
     corners = (half[:, None, None] + (_GAP + _STEPS[:, None, None]) / np.sqrt(2.0)) * _CORNERS
     offsets = np.concatenate([out[..., None] * _WAYS, corners], axis=2)
     return offsets, np.concatenate([distances, aside], axis=2)
-
-
-def _free_ones(every: _Candidates, free: np.ndarray, part: slice) -> _Candidates:
-    """Select one label's free candidates, the cheapest first, from the candidates of all labels.
-
-    The slice `part` selects the label's anchors; `free` (anchors of all labels, candidates) says which are
-    free.
-    """
-    which = np.flatnonzero(free[part])
-    cost = every.costs[part].ravel()[which]
-    order = np.argsort(cost, kind="stable")
-    which, of_anchor = which[order], which[order] // free.shape[1] + part.start
-    boxes, distances = every.boxes[part].reshape(-1, 4)[which], every.distances[part].ravel()[which]
-    return _Candidates(boxes, every.anchors[of_anchor], distances, cost[order])
-
-
-class _Chosen:
-    """The labels that are placed so far, and the index of the candidate that each label uses."""
-
-    def __init__(self, candidates: Sequence[_Candidates]) -> None:
-        self._of = candidates
-        self._boxes = np.full((len(candidates), 4), np.nan)
-        self._leaders = np.full((len(candidates), 4), np.nan)
-        self.choice: dict[int, int] = {}
-
-    def take(self, label: int, candidate: int) -> None:
-        of = self._of[label]
-        self.choice[label] = candidate
-        self._boxes[label] = of.boxes[candidate] + (-_APART, -_APART, _APART, _APART)
-        far = of.distances[candidate] > FAR
-        self._leaders[label] = of.leaders[candidate] if far else np.nan
-
-    def leave(self, label: int) -> None:
-        del self.choice[label]
-        self._boxes[label] = self._leaders[label] = np.nan
-
-    def in_the_way(self, label: int, count: int | None) -> np.ndarray:
-        """Return whether each candidate of a label collides with each label: shape (candidates, labels).
-
-        The candidates are the first `count`; all if it is None.
-        """
-        of = self._of[label]
-        boxes = of.boxes[:count]
-        found = np.zeros((len(boxes), len(self._boxes)), dtype=bool)
-        others = np.array([other for other in self.choice if other != label], dtype=int)
-        found[:, others] = _overlap(boxes, self._boxes[others])
-        led = others[np.isfinite(self._leaders[others, 0])]
-        if len(led):
-            found[:, led] |= _crossing(self._leaders[led], boxes).T
-        far = np.flatnonzero(of.distances[:count] > FAR)
-        if len(far):
-            found[np.ix_(far, others)] |= _crossing(of.leaders[far], self._boxes[others])
-        return found
-
-    def best(self, label: int, before: int | None = None) -> int | None:
-        """Return the index of a label's cheapest candidate that collides with no label; None without one.
-
-        Only the first `before` candidates count; all if it is None.
-        """
-        for count in (_FIRST, None) if before is None else (before,):
-            free = ~self.in_the_way(label, count).any(axis=1)
-            if free.any():
-                return int(free.argmax())
-        return None
 
 
 def _overlap(boxes: np.ndarray, others: np.ndarray) -> np.ndarray:
@@ -324,19 +264,17 @@ def place_labels(requests: Sequence[LabelRequest], obstacles: Obstacles) -> list
     if not requests:
         return []
     candidates = _candidates(requests, obstacles)
-    chosen = _Chosen(candidates)
-    order = sorted(range(len(requests)), key=lambda i: (-requests[i].priority, len(candidates[i].costs), i))
-    for label in order:
-        if (best := chosen.best(label)) is not None:
-            chosen.take(label, best)
-        else:
-            _displace(label, chosen, candidates)
-    for label in order:  # labels placed earlier may have moved, so a cheaper place may be free now
-        now = chosen.choice.get(label, 0)
-        if now and (best := chosen.best(label, now)) is not None:
-            chosen.take(label, best)
-    numbers = map(chosen.choice.get, range(len(requests)))
-    return [None if k is None else own.place(k) for own, k in zip(candidates, numbers, strict=True)]
+    places: list[Place | None] = [None] * len(requests)
+    boxes, leaders = np.empty((0, 4)), np.empty((0, 4))  # of the labels that have a place
+    for label in sorted(
+        range(len(requests)), key=lambda i: (-requests[i].priority, len(candidates[i].boxes), i)
+    ):
+        of = candidates[label]
+        if (best := of.first_free(boxes, leaders)) is not None:
+            places[label] = of.place(best)
+            boxes = np.vstack([boxes, of.boxes[best] + (-_APART, -_APART, _APART, _APART)])
+            leaders = np.vstack([leaders, of.leaders[best : best + (of.distances[best] > FAR)]])
+    return places
 
 
 def keep_places(
@@ -376,18 +314,3 @@ def keep_places(
     meets[far] |= _crossing(leaders, apart)
     np.fill_diagonal(meets, False)
     return [*places] if obstacles.is_free(boxes).all() and not meets.any() else None
-
-
-def _displace(label: int, chosen: _Chosen, candidates: Sequence[_Candidates]) -> None:
-    """Place a label where another label is, if that one can move elsewhere; else leave it unplaced."""
-    found = chosen.in_the_way(label, None)
-    for candidate in np.flatnonzero(found.sum(axis=1) == 1)[:_TRIED]:
-        other = int(found[candidate].argmax())
-        before = chosen.choice[other]
-        chosen.leave(other)
-        chosen.take(label, int(candidate))
-        if (best := chosen.best(other)) is not None:
-            chosen.take(other, best)
-            return
-        chosen.leave(label)
-        chosen.take(other, before)

@@ -18,6 +18,7 @@ _LETTERS = 11.0
 # Smallest and largest height of a row, and space around the drawing [pt].
 _LOWEST, _HIGHEST, _AROUND = 84.0, 200.0, 32.0
 _THIN, _DASHED = 0.8, (4.0, 2.5)
+_BEYOND = 0.15  # length of a dashed line beyond a dimension line, as a fraction of its length before it
 _ALONG = np.array([0.5, 0.36, 0.64, 0.24, 0.76])  # fractions of a length beside which its symbol may stand
 
 Point = tuple[float, float] | np.ndarray
@@ -57,6 +58,23 @@ class Sketch:
         ends = np.array([start, end], dtype=float)
         self.add(Arrow(ends[0], ends[1], "dimension", symbol, 1.0, both=True))
         self.say(symbol, ends[0] + _ALONG[:, None] * (ends[1] - ends[0]), towards)
+
+    def width(self, symbol: str, one: Point, other: Point, y: float) -> None:
+        """Dimension how far two points are apart horizontally: at height y, with dashed lines from each."""
+        self._dimension(symbol, one, other, 1, y)
+
+    def height(self, symbol: str, one: Point, other: Point, x: float) -> None:
+        """Dimension how far two points are apart vertically: at x, with dashed lines from each."""
+        self._dimension(symbol, one, other, 0, x)
+
+    def _dimension(self, symbol: str, one: Point, other: Point, k: int, at: float) -> None:
+        """Dimension two points on the line on which coordinate k is `at`; the symbol is on its far side."""
+        points, towards = np.array([one, other], dtype=float), np.zeros(2)
+        ends, towards[k] = points.copy(), at - points[:, k].mean()
+        ends[:, k] = at
+        for point, end in zip(points, ends, strict=True):
+            self.dashed(point, end + _BEYOND * (end - point))
+        self.length(symbol, ends[0], ends[1], towards)
 
     def angle(self, symbol: str, centre: Point, radius: float, start: float, end: float) -> None:
         """Draw an arc from angle `start` to angle `end` [rad], with a symbol outside the arc."""

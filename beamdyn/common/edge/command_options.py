@@ -8,8 +8,7 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, fields, is_dataclass
 from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from cyclopts import Parameter, Token
 
 from beamdyn.common.results.files import check_writable, same_file, write_text
-from beamdyn.common.results.pictures import Axes, Figure, figure_of, save_figure
+from beamdyn.common.results.pictures import Figure, save_figure
 from beamdyn.common.spreading import DEFAULT_SAMPLES
 
 if TYPE_CHECKING:
@@ -181,11 +180,6 @@ def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
     write_text(path, csv_text(rows, "\t" if path.suffix.lower() == ".tsv" else ","))
 
 
-def on_axes(draw: Callable[[Axes], object]) -> Callable[[], Figure]:
-    """Return a function that makes a figure, and calls `draw` with the axes of this figure."""
-    return partial(figure_of, draw)
-
-
 def _named_by(scene: Path) -> list[Path]:
     """Return the CSV files of cross-sections or recorded motions that a scene file names; else none."""
     try:
@@ -204,6 +198,20 @@ def _named_by(scene: Path) -> list[Path]:
 # Inputs that are varied ------------------------------------------------------------------------------
 
 OPTION, SPREAD = "--vary", "--spread"
+
+
+def given_options(group: Any) -> dict[str, object]:
+    """Return the options of a group, and of groups within it, that differ from their defaults."""
+    given: dict[str, object] = {}
+    for option in fields(group):
+        value = getattr(group, option.name)
+        if is_dataclass(value):
+            given |= given_options(value)
+        elif value != option.default:
+            given[option.name] = value
+    return given
+
+
 _MOST_WORKERS = 128
 
 
@@ -255,17 +263,10 @@ class VaryOptions:
         """Return "product" for all combinations of the inputs' values, "zip" if n-th values go together."""
         return "zip" if self.together else "product"
 
-    @property
-    def options(self) -> dict[str, object]:
-        """Return the options that differ from their defaults, for the heading of a report."""
-        given: dict[str, object] = {"vary": self.vary or None, "store": self.store}
-        given["workers"] = self.workers if self.workers > 1 else None
-        return given | {"together": True if self.together else None}
-
     def check(self) -> None:
         """Raise an error for options that have no effect unless an input is varied."""
-        for name in ("together", "workers", "store"):
-            if not self.vary and getattr(self, name) != getattr(NOTHING_VARIED, name):
+        for name in given_options(self):
+            if not self.vary:
                 raise ValueError(f"--{name} goes with {OPTION}: without {OPTION} there is one design only")
 
     def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
@@ -315,17 +316,10 @@ class SpreadOptions:
     samples: Annotated[int, Parameter(converter=_whole)] = DEFAULT_SAMPLES
     seed: Annotated[int, Parameter(converter=_whole)] = 0
 
-    @property
-    def options(self) -> dict[str, object]:
-        """Return the options that differ from their defaults, for the heading of a report."""
-        given: dict[str, object] = {"spread": self.spread or None}
-        given["samples"] = self.samples if self.samples != DEFAULT_SAMPLES else None
-        return given | {"seed": self.seed or None}
-
     def check(self, varying: VaryOptions) -> None:
         """Raise an error for options that contradict each other, or inputs both varied and with tolerance."""
-        for name in ("samples", "seed"):
-            if not self.spread and getattr(self, name) != getattr(NO_SPREAD, name):
+        for name in given_options(self):
+            if not self.spread:
                 raise ValueError(f"--{name} goes with {SPREAD}: no random designs are drawn without it")
         if not self.spread:
             return

@@ -6,11 +6,9 @@ import shlex
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from beamdyn._version import __version__
-from beamdyn.common.edge.config import read
 from beamdyn.common.edge.rendering import STYLE, drawing, html, picture
 
 if TYPE_CHECKING:
@@ -54,11 +52,6 @@ class Question:
         # The command is written as one line, so that it can be a comment.
         line = "".join(c if c.isprintable() else " " for c in shlex.join(words))
         return cls(f"{command}: {file}", f"# {line}\n\n{text}")
-
-    @classmethod
-    def on_file(cls, command: str, file: str | Path, **options: object) -> Question:
-        """Make the record of a command from its file; raise `ConfigError` if it cannot be read."""
-        return cls.of(command, file, read(file), **options)
 
 
 @dataclass(frozen=True)

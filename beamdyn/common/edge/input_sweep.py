@@ -53,11 +53,6 @@ class Output:
         """Return the number (or an array of numbers) from a solution, in the unit in which it is shown."""
         return np.asarray(self.of(result)) / self.scale
 
-    @property
-    def label(self) -> str:
-        """Return name and unit of the result, for tables and pictures."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
-
 
 @dataclass(frozen=True)
 class InputSweep(Result):

@@ -9,7 +9,7 @@ import unicodedata
 from collections.abc import Callable
 from datetime import date, time
 from decimal import Decimal
-from functools import cache, lru_cache
+from functools import cache
 from typing import TYPE_CHECKING
 
 from beamdyn.common.inputs.checks import InvalidValue
@@ -113,10 +113,6 @@ def quantity(text: object, unit: str) -> float:
     InvalidInput
         If `text` is not a finite number with a unit of the same kind as `unit`; its `field` is empty.
     """
-    return _known(text, unit) if isinstance(text, str) else _quantity(text, unit)
-
-
-def _quantity(text: object, unit: str) -> float:
     number, given = _split(text, unit)
     if (factor := _common_factor(given, unit)) is not None:
         return _finite(_product(number, factor), text, unit)
@@ -147,12 +143,6 @@ def _product(number: str, factor: Decimal) -> float:
         return float(Decimal(number) * factor)
     except ArithmeticError:  # the exponent is outside the range of decimal numbers
         return math.nan
-
-
-@lru_cache(4096)
-def _known(text: str, unit: str) -> float:
-    """Convert a quantity as `quantity` does, with a cache, since a form reads all inputs at each change."""
-    return _quantity(text, unit)
 
 
 def unit_as_written(text: object, unit: str) -> tuple[str, Callable[[float], float]]:

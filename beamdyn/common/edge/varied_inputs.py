@@ -48,11 +48,6 @@ class Axis:
     given: np.ndarray
     values: np.ndarray
 
-    @property
-    def label(self) -> str:
-        """Return key and unit of the input, for tables and pictures."""
-        return f"{self.input.name} [{self.unit}]" if self.unit else self.input.name
-
 
 @dataclass(frozen=True)
 class Coordinate(Input):

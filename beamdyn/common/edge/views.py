@@ -45,7 +45,7 @@ class View:
     tables : callable, optional
         ``tables(result)`` returns tables and sentences for the console; by default, one table of all columns.
     rows : callable, optional
-        ``rows(result)`` returns columns, or the rows of the CSV file with headings in the first row.
+        ``rows(result)`` returns columns, or beside `tables` the rows of the CSV file, headings first.
     index : int
         Number of columns, from the left, that are the index of a data frame.
     figure : callable, optional
@@ -78,11 +78,8 @@ def tables_of(result: Result) -> RenderableType:
     rows = None if view.rows is None else view.rows(result)
     if isinstance(rows, Columns):
         return table_of(rows, result.display_units, rows.title or title)
-    if rows is None:
-        fields = [(name.replace("_", " "), _cell(each), unit) for name, each, unit in _named_fields(result)]
-        return table(title, ("", "value", "unit"), fields, (0, 1, 2))
-    heads, *cells = rows
-    return table(title, [*map(str, heads)], [[_cell(value) for value in row] for row in cells], ())
+    fields = [(name.replace("_", " "), _cell(each), unit) for name, each, unit in _named_fields(result)]
+    return table(title, ("", "value", "unit"), fields, (0, 1, 2))
 
 
 def rows_of(result: Result) -> Rows:

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.optimize import isotonic_regression
 
 from beamdyn.common.plots.axes_and_lines import MOTION_DASHES, draw_by_plane, set_up_axes, style_by_plane
 from beamdyn.common.results.columns import DisplayUnits
 from beamdyn.common.results.pictures import COLOURS, Axes
 
 _MOST_ABOVE = 2.0  # highest frequency shown, as a multiple of the highest excitation frequency
-_HEADROOM = 1.06
+_HEADROOM = 1.06  # height of the axes, as a multiple of the highest frequency shown
 _MOST_HIDDEN = 2  # largest number of modes above the visible frequencies that the legend names
 _APART = 0.042  # least distance of two labels, as a fraction of the axes' height
 _LONGEST = 36  # characters of a legend entry, above which the legend has two columns
@@ -105,7 +106,8 @@ def plot_campbell(
     factor = DisplayUnits(unit).speed_unit().per_si
     ax = set_up_axes(ax, f"{'rotor speed' if unit == 'rpm' else 'angular speed'} [{unit}]", "frequency [Hz]")
     first, last = scenes[0].speeds[[0, -1]]
-    top = _top(scenes, lines, last)
+    fastest = max(lines.values(), default=0.0) * last / (2 * np.pi)
+    top = top_of((of_mode for curves in scenes for of_mode in curves.frequency.T), fastest)
     ax.set(xlim=(factor * first, factor * last), ylim=(0, top))
     at_right, rows = _draw_lines(ax, factor, lines, np.array([first, last]), top)
     _name_at_right(ax, [*at_right, *_draw_modes(ax, factor, scenes, top)], top)
@@ -135,16 +137,20 @@ def plot_campbell(
     return ax
 
 
-def _top(scenes: Sequence[Curves], lines: Mapping[str, float], last: float) -> float:
-    """Return the upper limit of the frequency axis [Hz], which omits modes far above all excitation lines."""
-    fastest = max(lines.values(), default=0.0) * last / (2 * np.pi)
-    shown = np.concatenate([curves.frequency.ravel() for curves in scenes])
-    shown = shown[np.isfinite(shown)]
-    if not shown.size:
-        return max(fastest, 1.0)
-    highest = [np.nanmax(f) for curves in scenes for f in curves.frequency.T if np.isfinite(f).any()]
-    within = [f for f in highest if not fastest or f <= _MOST_ABOVE * fastest]
-    return _HEADROOM * max(within, default=min(highest))
+def top_of(frequencies: Iterable[np.ndarray], fastest: float) -> float:
+    """Return the upper limit of the frequency axis [Hz], a little above the highest mode that is shown.
+
+    Parameters
+    ----------
+    frequencies : iterable of ndarray
+        The frequencies of each mode [Hz].
+    fastest : float
+        Highest excitation frequency [Hz]. Modes up to twice of it are shown, but at least the lowest mode; if
+        it is 0, all modes.
+    """
+    highest = [float(np.nanmax(each)) for each in frequencies if np.isfinite(each).any()]
+    near = [each for each in highest if not fastest or each <= _MOST_ABOVE * fastest]
+    return _HEADROOM * max(near, default=min(highest, default=fastest)) or 1.0
 
 
 def _draw_lines(
@@ -251,14 +257,7 @@ def _spread(heights: Sequence[float]) -> list[float]:
     """Move ascending heights of labels as little as possible, so that the labels do not overlap.
 
     Subtract from each height its index times the least distance: these values must not descend.  The closest
-    non-descending values are found by averaging over blocks of descending values (isotonic regression by the
-    pool-adjacent-violators algorithm).
+    non-descending values are those of isotonic regression.
     """
-    blocks: list[tuple[float, int]] = []
-    for i, height in enumerate(heights):
-        blocks.append((height - i * _APART, 1))
-        while len(blocks) > 1 and blocks[-2][0] > blocks[-1][0]:
-            (a, m), (b, n) = blocks[-2:]
-            blocks[-2:] = [((m * a + n * b) / (m + n), m + n)]
-    means = [mean for mean, size in blocks for _ in range(size)]
-    return [mean + i * _APART for i, mean in enumerate(means)]
+    least = _APART * np.arange(len(heights))
+    return (isotonic_regression(np.asarray(heights) - least).x + least).tolist()

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.artist import Artist
 
+from beamdyn.common.inputs.described import VariedInput
 from beamdyn.common.plots.axes_and_lines import new_axes, panels, set_up_axes
 from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.pictures import COLOURS, Axes
@@ -143,30 +144,16 @@ _MEETS = "#A0303A"  # colour of lines that a result may cross, such as excitatio
 
 
 @dataclass(frozen=True)
-class MapInput:
-    """A varied input that is an axis of a plot.
+class MapInput(VariedInput):
+    """A varied input that is an axis of a plot, with its name and unit as shown there.
 
     Parameters
     ----------
-    name : str
-        Name of the input.
-    unit : str
-        Unit in which the input is shown.
-    values : ndarray, shape (n,)
-        Values of the input [unit].
     present : float, optional
         Value of the input in the present design [unit], which is marked.
     """
 
-    name: str
-    unit: str
-    values: np.ndarray
     present: float | None = None
-
-    @property
-    def label(self) -> str:
-        """Return name and unit of the input."""
-        return f"{self.name} [{self.unit}]" if self.unit else self.name
 
     def at(self, i: int) -> str:
         """Format the input's value with index i."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -17,7 +17,7 @@ import numpy as np
 from beamdyn._version import __version__
 from beamdyn.common.results.columns import DisplayUnits, InDisplayUnits
 from beamdyn.common.results.files import as_path, check_writable, write_text
-from beamdyn.common.results.one_line import OneLine, brief, shortened, warned
+from beamdyn.common.results.one_line import OneLine
 from beamdyn.common.results.pictures import labelled
 from beamdyn.common.results.shown_by import MEDIA
 from beamdyn.common.results.snapshots import ReadOnlyArrays, decode, encode, make_read_only, nullified, plain
@@ -213,7 +213,6 @@ def load(path: str | Path) -> Any:
 
 
 Units = DisplayUnits | Mapping[str, str] | None
-_MOST_PARTS = 6  # largest number of parts of a summary, if the class of the result does not choose them
 
 
 class Shown(OneLine, InDisplayUnits):
@@ -227,19 +226,6 @@ class Shown(OneLine, InDisplayUnits):
         super().__init_subclass__(**options)
         if "plot" in vars(cls):
             cls.plot = labelled(vars(cls)["plot"])  # pyright: ignore[reportAttributeAccessIssue]
-
-    def headline(self) -> Iterable[str]:
-        """Yield the parts of the result's one-line summary, such as main numbers with units, and the error.
-
-        By default, yield the first public fields and the number of warnings.
-        """
-        names = [f.name for f in dataclasses.fields(self) if f.repr]  # pyright: ignore[reportArgumentType]
-        names = [name for name in names if name not in ("provenance", "warnings", "message")]
-        for name in names[:_MOST_PARTS]:
-            value = getattr(self, name)
-            text = type(value).__name__ if dataclasses.is_dataclass(value) else brief(value)
-            yield f"{name}={shortened(text, 30)}"
-        yield warned(getattr(self, "warnings", ()))
 
     @property
     def plot_label(self) -> str:

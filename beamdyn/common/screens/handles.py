@@ -6,14 +6,13 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any
 from zlib import crc32
 
 import numpy as np
 
 from beamdyn.common.drawing.layout import WIDTH, Layout, Paper, Rows, lay_out
-from beamdyn.common.drawing.svg import as_file, element
+from beamdyn.common.drawing.svg import element
 from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.toml_text import toml_value
 from beamdyn.common.edge.units import quantity
@@ -84,11 +83,6 @@ class Sheet:
     view: Viewport | None = None
     ratio: float = 1.0
     element: str = ""
-
-    @cached_property
-    def text(self) -> str:
-        """Return the text of the drawing's SVG file, or the reason why there is no drawing."""
-        return as_file(self.element) if self.element else self.said
 
     @property
     def name(self) -> str:

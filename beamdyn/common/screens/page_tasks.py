@@ -59,7 +59,7 @@ def solve_for_drawing(
     if screen.picture is None or not isinstance(found, ShownAnswer) or found.is_whole:
         return found
     with few_digits() if found.is_rough else nullcontext():
-        return replace(found, picture=_picture(screen, found.answer, narrow, svg_in_haste))
+        return replace(found, picture=picture_part(document, screen, found.answer, narrow, svg_in_haste))
 
 
 def sweep(
@@ -94,12 +94,10 @@ def folded(document: Document, screen: Screen, answer: Any, number: int) -> str:
     return screen.more[number].on_page(answer)
 
 
-def picture_part(document: Document, screen: Screen, answer: Any, narrow: bool) -> str:
+def picture_part(
+    document: Document, screen: Screen, answer: Any, narrow: bool, write: Callable[[Figure], str] = svg
+) -> str:
     """Return the picture of a result as HTML, for a narrow or a wide page."""
-    return _picture(screen, answer, narrow)
-
-
-def _picture(screen: Screen, answer: Any, narrow: bool, write: Callable[[Figure], str] = svg) -> str:
     draw = screen.picture
     assert draw is not None
     return picture(drawing(lambda: draw(answer, narrow), write), f"{screen.name}: picture of the result")

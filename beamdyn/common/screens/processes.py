@@ -249,46 +249,16 @@ class Share:
     """
 
     def __init__(self, solver: RunsTasks, most: int = _MOST - 1) -> None:
-        self._solver, self._room = solver, most
-        self._waiting: deque[asyncio.Future[None]] = deque()
+        self._solver, self._room = solver, asyncio.Semaphore(most)
 
     def submit(self, task: Task, document: Document, screen: Screen, *rest: Any) -> asyncio.Future[Any]:
         """Start ``task(document, screen, *rest)``, or queue it; cancelling the future stops the task."""
-        given = task, document, screen, *rest
-        if not self._room:
-            return asyncio.ensure_future(self._later(given))
-        self._room -= 1
-        return self._start(given)
 
-    def _start(self, given: tuple[Any, ...]) -> asyncio.Future[Any]:
-        try:
-            future = self._solver.submit(*given)
-        except BaseException:
-            self._leave()
-            raise
-        if future.done():
-            self._leave()
-        else:
-            future.add_done_callback(lambda _: self._leave())
-        return future
+        async def run() -> Any:
+            async with self._room:
+                return await self._solver.submit(task, document, screen, *rest)
 
-    async def _later(self, given: tuple[Any, ...]) -> Any:
-        self._waiting.append(place := asyncio.get_running_loop().create_future())
-        try:
-            await place
-        except asyncio.CancelledError:
-            # If the task was cancelled just when it was allowed to start, another task may start.
-            if not place.cancelled():
-                self._leave()
-            raise
-        return await self._start(given)
-
-    def _leave(self) -> None:
-        """Let the next waiting task start after another one has ended."""
-        while self._waiting:
-            if not (place := self._waiting.popleft()).done():
-                return place.set_result(None)
-        self._room += 1
+        return asyncio.ensure_future(run())
 
 
 class _Worker:

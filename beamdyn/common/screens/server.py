@@ -135,11 +135,11 @@ def _guarded(send: Send, host: str) -> Send:
     return send_guarded
 
 
-def root_of(program: Program, solver: RunsTasks) -> Callable[[], Awaitable[None]]:
-    """Return the function that builds the page for a client."""
+def root_of(program: Program, solver: Callable[[], RunsTasks]) -> Callable[[], Awaitable[None]]:
+    """Return the function that builds the page for a client; `solver` makes what computes for one page."""
 
     async def root() -> None:
-        await open_page(program, Share(solver))
+        await open_page(program, solver())
 
     return root
 
@@ -174,7 +174,7 @@ def serve(program: Callable[[], Program], host: str, port: int, browser: bool) -
     app.on_shutdown(processes.close)
     with quiet():
         ui.run(
-            root_of(made, processes),
+            root_of(made, lambda: Share(processes)),
             host=host,
             port=port,
             title=made.title,

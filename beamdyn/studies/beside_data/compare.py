@@ -112,14 +112,21 @@ def beside(scene: Scene, data: MeasuredFrequencies) -> FrequencyComparison:
 def _compared(scene: Scene, rows: Sequence[_MeasuredRow], start: float) -> FrequencyComparison:
     data = rows[0].data
     at, column = np.nonzero(np.isfinite(data.frequency))
-    joined = (np.concatenate([getattr(row, name) for row in rows]) for name in _PARTS)
+    found = map(np.concatenate, zip(*(row.of_modes() for row in rows), strict=True))
+    computed, mode, error, model_error, likeness = found
     warnings = dict.fromkeys(str(said) for row in rows for said in row.modes.warnings)
     provenance = rows[0].modes.provenance
     return FrequencyComparison(
-        tuple(data.labels[k] for k in column.tolist()),
-        data.speeds[at],
-        data.frequency[at, column],
-        *joined,
+        label=tuple(data.labels[k] for k in column.tolist()),
+        speed=data.speeds[at],
+        measured=data.frequency[at, column],
+        computed=computed,
+        mode=mode,
+        allowance=data.allowance[at, column],
+        rounding=data.rounding[at, column],
+        error=error,
+        model_error=model_error,
+        likeness=likeness,
         resembles=tuple(said for row in rows for said in row.resembling()),
         unmeasured=tuple(said for row in rows for said in row.unmeasured()),
         explanations=(),
@@ -174,9 +181,6 @@ def _assumed(data: measured_curves.MeasuredCurves, speed: float) -> Iterator[Sta
         yield Statement(*said, kind=INPUT)
 
 
-_PARTS = "computed", "mode", "allowance", "rounding", "error", "model_error", "likeness"
-
-
 @dataclass(frozen=True)
 class _MeasuredRow:
     """Measured frequencies at one speed, together with the computed modes at that speed.
@@ -215,40 +219,18 @@ class _MeasuredRow:
     def _place(self) -> np.ndarray:
         return pair(self.data.frequency[self.row], self.modes.frequency, self.of_shapes)[self._known]
 
-    def _of_modes(self, values: np.ndarray, none: float = np.nan) -> np.ndarray:
-        return np.where(self._place == NO_MODE, none, values[self._place])
+    def of_modes(self) -> tuple[np.ndarray, ...]:
+        """Return frequency [Hz], number, error and model error [Hz] and likeness of each value's mode.
 
-    @property
-    def mode(self) -> np.ndarray:
-        return self._place + 1
-
-    @property
-    def computed(self) -> np.ndarray:
-        return self._of_modes(self.modes.frequency)
-
-    @property
-    def allowance(self) -> np.ndarray:
-        return self.data.allowance[self.row][self._known]
-
-    @property
-    def rounding(self) -> np.ndarray:
-        return self.data.rounding[self.row][self._known]
-
-    @property
-    def error(self) -> np.ndarray:
-        return self._of_modes(self.modes.error * self.modes.frequency)
-
-    @property
-    def model_error(self) -> np.ndarray:
-        return self._of_modes(self.modes.left_out_effects.total_of_known * self.modes.frequency)
-
-    @property
-    def likeness(self) -> np.ndarray:
-        none = np.full(len(self._place), np.nan)
-        if self.data.shapes is None or self.of_shapes is None:
-            return none
-        found = self.of_shapes[self._known]
-        return np.where(self._place == NO_MODE, np.nan, found[np.arange(len(found)), self._place])
+        Without a mode the number is 0, and the others are nan.
+        """
+        place, frequency, left_out = self._place, self.modes.frequency, self.modes.left_out_effects
+        shapes = None if self.data.shapes is None else self.of_shapes
+        alike = shapes[self._known] if shapes is not None else np.full((len(place), len(frequency)), np.nan)
+        errors = self.modes.error * frequency, left_out.total_of_known * frequency
+        each = frequency[place], *(error[place] for error in errors), alike[np.arange(len(place)), place]
+        computed, error, model_error, likeness = np.where(place == NO_MODE, np.nan, each)
+        return computed, place + 1, error, model_error, likeness
 
     def resembling(self) -> Iterator[str]:
         """Yield, for each measured value without a mode, the mode with the most similar shape.
