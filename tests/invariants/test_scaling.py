@@ -60,9 +60,15 @@ def test_signs_of_torsion_modes_do_not_depend_on_the_unit_of_length(offset: floa
     """Twist and deflection of the tip have opposite signs with one of the offsets."""
 
     def tips(metre: float) -> np.ndarray:
-        inertia = {"rotary_inertia": 1e-3 * metre**2, "second_rotary_inertia": 1e-3 * metre**2}
-        twisting = {"torsion_stiffness": 0.1 * metre**2, "mass_offset": offset * metre}
-        beam = bd.Beam.from_stiffness(metre, 1.0, metre**2, **inertia, **twisting)
+        beam = bd.Beam.from_stiffness(
+            metre,
+            1.0,
+            metre**2,
+            rotary_inertia=1e-3 * metre**2,
+            second_rotary_inertia=1e-3 * metre**2,
+            torsion_stiffness=0.1 * metre**2,
+            mass_offset=offset * metre,
+        )
         modes = bd.natural_modes(bd.Scene(beam, physics=bd.Physics(torsion=True)))
         assert "torsion" in modes.kind
         return modes.tip * np.sqrt(metre)
