@@ -214,9 +214,9 @@ class Equations:
     def corner(self) -> np.ndarray:
         """Deflection of the tip's corner 2 y/width = 1 per unit of each coordinate, shape (n,).
 
-        If the width is unknown, it is the deflection of the axis [m] plus the twist [rad].
+        If the width is unknown, it is the twist of the tip [rad].
         """
-        values = self.tip.copy()
+        values = self.tip * all(functions.of_strip for _, functions in self.sections)
         for name, functions in self.sections:
             of_field = self.shapes[name]
             values[self.blocks[of_field.block]] += of_field.matrix.T @ functions.corner

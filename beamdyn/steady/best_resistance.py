@@ -25,10 +25,14 @@ from beamdyn.steady.harvest import ElectricLines, Harvest, electrodes_of, harves
 from beamdyn.steady.response import SteadyResponse, steady_response
 from beamdyn.steady.road_harvest import check_road, harvest_on_road
 
-_DECADES = 4.0  # decades tried first to either side of 1/(first angular frequency * capacitance)
+# Decades tried first below 1/(first angular frequency * capacitance), and above it; above 1/(speed *
+# capacitance) if the speed is lower, as slow motion is matched by that.
+_DECADES = 4.0
 _WIDTH, _HEIGHT = 7.5, 4.8  # width and height of the picture [inch]
 _DIGITS = 6  # largest number of digits of a resistance
-# Assumed ratio of the relative errors of resistance and power; it was at most 1 in each of 16 cases.
+_NEAR = 1.0  # largest logarithm of the ratio of a tried resistance to the best one, for the curvature
+# Assumed ratio of the relative errors of resistance and power, where log power has the curvature -1 over log
+# resistance; it was at most 1 in each of 16 cases.
 _LIKE_POWER = 2.0
 
 
@@ -94,9 +98,15 @@ class BestResistance(Harvest):
     def resistance_error(self) -> float:
         """Estimated error of the resistance [ohm].
 
-        The relative error is twice that of the power plus the tolerance of the search.
+        An error of the power moves its maximum the further, the flatter the power is there: the relative
+        error is twice that of the power, over the curvature of log power over log resistance, plus the
+        tolerance of the search.  It is inf where the power has no maximum among the resistances tried.
         """
-        return (_LIKE_POWER * float(self.total_error[0]) + FULL.tolerance) * self.resistance
+        x = np.log(self.resistances / self.resistance)
+        near = np.abs(x) < _NEAR
+        curvature = -2 * float(np.polyfit(x[near], np.log(self.tried_power[near]), 2)[0])
+        moved = _LIKE_POWER * float(self.total_error[0]) / curvature if curvature > 0 else math.inf
+        return (moved + FULL.tolerance) * self.resistance
 
     def say_resistance(self) -> str:
         """Return the best resistance as text, with the digits that its error leaves, where that is known."""
@@ -128,8 +138,8 @@ def best_resistance(
     """Find the load resistance of the largest mean power at a speed, by bounded search.
 
     Resistances are tried over four decades on either side of 1/(omega C), with the first natural frequency
-    and the capacitance of the layers.  The best is refined by Brent's method, to a relative accuracy of
-    1e-6.
+    and the capacitance of the layers; further above it if the speed is below that frequency.  The best is
+    refined by Brent's method, to a relative accuracy of 1e-6.
 
     Parameters
     ----------
@@ -188,7 +198,7 @@ def sought(
     request = replace(response.request, discretization=response.request.model.discretization)
     response = replace(response, request=request)
     first = math.sqrt(request.model.solver.lowest_at_rest)
-    middle = math.log10(1 / (first * electrodes.capacitance(scene.beam.length)))
+    slowest, C = min(first, abs(speed) or first), electrodes.capacitance(scene.beam.length)
 
     tried: dict[float, float] = {}
 
@@ -197,7 +207,8 @@ def sought(
         tried.update(zip(resistances.tolist(), found.tolist(), strict=True))
         return found
 
-    grid = np.linspace(middle - _DECADES, middle + _DECADES, search.tried)
+    ends = -math.log10(first * C) - _DECADES, -math.log10(slowest * C) + _DECADES
+    grid = np.linspace(*ends, search.tried)
     k = int(np.argmax(highest := powers(grid)))
     if not highest[k] > 0:
         bound, remedy = "nothing vibrates at this speed", "give gravity, or a wavy road"

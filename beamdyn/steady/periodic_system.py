@@ -29,6 +29,7 @@ _EPS = np.finfo(float).eps
 # Attributes that a motion must have for its steady state to be known.
 _STEADY_STATE = ("lines", "road_multiple", "road_acceleration", "steady_acceleration")
 _GRIDS = (8, 16, 32, 64)  # numbers of samples of each phase, tried in turn until the harmonics are resolved
+_SAME_LINE = 1e-9  # relative difference below which two lines have the same frequency
 
 
 @dataclass(frozen=True)
@@ -354,9 +355,13 @@ def excitation_lines(
 
 
 def distinct_lines(lines: Iterable[Line]) -> list[Line]:
-    """Select one line of each frequency, in ascending order, without the static line."""
-    distinct: dict[float, Line] = {}
+    """Select one line of each frequency, in ascending order, without the static line.
+
+    Of lines that rounding of the inputs sets apart, the first one is kept.
+    """
+    distinct: list[Line] = []
     for line in lines:
-        if line.multiple > 1e-12:
-            distinct.setdefault(round(line.multiple, 12), line)
-    return [distinct[multiple] for multiple in sorted(distinct)]
+        known = (abs(line.multiple - other.multiple) <= _SAME_LINE * line.multiple for other in distinct)
+        if line.multiple > _SAME_LINE and not any(known):
+            distinct.append(line)
+    return sorted(distinct, key=lambda line: line.multiple)

@@ -54,6 +54,28 @@ def test_similar_beams(length: float, log_stiffness: float, log_mass: float) -> 
     np.testing.assert_allclose(found, bd.natural_modes(unit, 3.0).frequency, rtol=1e-11)
 
 
+@pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # any units
+@pytest.mark.parametrize("offset", [-0.05, 0.05])
+def test_signs_of_torsion_modes_do_not_depend_on_the_unit_of_length(offset: float) -> None:
+    """Twist and deflection of the tip have opposite signs with one of the offsets."""
+
+    def tips(metre: float) -> np.ndarray:
+        beam = bd.Beam.from_stiffness(
+            metre,
+            1.0,
+            metre**2,
+            rotary_inertia=1e-3 * metre**2,
+            second_rotary_inertia=1e-3 * metre**2,
+            torsion_stiffness=0.1 * metre**2,
+            mass_offset=offset * metre,
+        )
+        modes = bd.natural_modes(bd.Scene(beam, physics=bd.Physics(torsion=True)))
+        assert "torsion" in modes.kind
+        return modes.tip * np.sqrt(metre)
+
+    np.testing.assert_allclose(tips(1024.0), tips(1.0), rtol=1e-9)
+
+
 def test_modes_are_orthonormal() -> None:
     modes = bd.natural_modes(HARVESTER, 50.0, 5)
     pencil, v = modes.model.solver.pencil, modes.vectors

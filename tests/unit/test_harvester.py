@@ -295,9 +295,24 @@ def test_the_best_resistance_is_printed_with_the_digits_that_more_modes_keep(cap
 def test_summary_and_picture_give_the_best_resistance_the_digits_of_the_table():
     best = bd.best_resistance(SCENE, 55.0, modes=1)
     digits = best.say_resistance()
-    assert abs(float(digits.removesuffix(" ohm")) - best.resistance) <= 2 * best.resistance_error
+    rounded = Decimal(digits.removesuffix(" ohm"))
+    assert abs(float(rounded) - best.resistance) <= 10.0 ** int(rounded.as_tuple().exponent) / 2
     assert f"best resistance {digits} at" in str(best)
     assert f"best, {digits}" in best.plot().get_legend_handles_labels()[1]
+
+
+def test_the_error_of_a_best_resistance_counts_how_flat_the_power_is():
+    """A load that alone damps takes all power of nearly white noise: the power hardly depends on it."""
+    undamped = replace(SCENE, damping_ratio=0.0, motion=bd.RollingWheel(0.3, 55.0))
+    road = bd.RoadRoughness("A", highest=10.0)
+    two, three = (bd.best_resistance(undamped, 50.0, modes=count, road=road) for count in (2, 3))
+    assert abs(two.resistance - three.resistance) <= two.resistance_error
+
+
+def test_the_best_resistance_of_slow_motion_is_inverse_to_the_speed():
+    slow, slower = (bd.best_resistance(SCENE, speed, modes=1) for speed in (1e-2, 1e-4))
+    assert 100 * slow.resistance == pytest.approx(slower.resistance, rel=1e-3)
+    assert slow.resistance_error < slow.resistance
 
 
 def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):

@@ -345,3 +345,14 @@ def test_modes_of_the_body_that_are_not_sought_are_named() -> None:
     written = found[1].to_dict()
     assert [mode["kind"] for mode in written["unlisted_modes"]] == ["torsion"]
     assert written["unlisted"] == found[1].unlisted  # crossings of the next order, a number
+
+
+@pytest.mark.parametrize("change", [-3e-13, 3e-13])
+def test_lines_that_rounding_sets_apart_are_one(change: float) -> None:
+    """Twice the road's frequency and four times that of rotation meet where the road has two waves a turn."""
+    near, exact = (
+        bd.resonance_speeds(rolling(waves, gravity=9.81), 120.0, modes=1, order=2)
+        for waves in (2.0 * (1 + change), 2.0)
+    )
+    assert [line.name for line in near.lines] == [line.name for line in exact.lines]
+    assert (len(near), near.unlisted, near.may_peak) == (len(exact), exact.unlisted, exact.may_peak)

@@ -91,7 +91,12 @@ class Deflection:
 
 
 class SectionFunctions(Protocol):
-    """Functions of a field that deform a strip's cross-sections: deflections that vary over its width."""
+    """Functions of a field that deform a strip's cross-sections: deflections that vary over its width.
+
+    `of_strip` is whether the width is known.
+    """
+
+    of_strip: ClassVar[bool]
 
     @property
     def of_each(self) -> int:

@@ -9,7 +9,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -284,6 +284,7 @@ class StackedSpace:
         Ratio of the local width to the width b in the argument 2 y/b of the functions across.
     """
 
+    of_strip: ClassVar[bool] = True
     along: Space
     numbers: tuple[int, ...]
     fewer: int

@@ -94,6 +94,7 @@ class TurnedSections:
         Functions along the beam.
     """
 
+    of_strip: ClassVar[bool] = False
     along: Space
 
     @property
