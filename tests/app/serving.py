@@ -1,5 +1,6 @@
 """Starting an interactive program in a new process, and the addresses that the process listens to."""
 
+import asyncio
 import ipaddress
 import os
 import sys
@@ -16,6 +17,13 @@ IN_BROWSER = [
     pytest.mark.skipif(CHROMIUM is None, reason="there is no chromium; on Debian: apt-get install chromium"),
 ]
 _LISTENS = "0A"  # state of a socket in /proc/net/tcp
+
+
+async def wait_for(condition):
+    """Wait until a condition holds; fail if it does not in time."""
+    async with asyncio.timeout(PATIENCE):
+        while not condition():
+            await asyncio.sleep(0.01)
 
 
 def listens_to(process):

@@ -12,7 +12,7 @@ from nicegui.testing.user_interaction import UserInteraction
 from beamdyn.common.screens import page_tasks
 from brakes.app.program import BRAKES
 from tests.app.conftest import AtOnce
-from tests.app.serving import PATIENCE
+from tests.app.serving import wait_for
 
 DRAWN = {page_tasks.folded, page_tasks.drawing_file, page_tasks.sweep_file, page_tasks.report}
 
@@ -59,12 +59,6 @@ def press(user, words):
     found = next(e for e in made if words in (e.props.get("aria-label"), getattr(e, "text", None)))
     it = found.parent_slot.parent if found.tag == "q-item-section" else found
     UserInteraction(user, {it}, None).click()
-
-
-async def wait_for(condition):
-    async with asyncio.timeout(PATIENCE):
-        while not condition():
-            await asyncio.sleep(0.01)
 
 
 async def downloaded(*users):
