@@ -62,13 +62,7 @@ class Model(FieldsOnly):
     @cached_property
     def equations(self) -> Equations:
         """Equations of motion, linear about the straight beam or, with section matrices, its curved axis."""
-        return self._straight if self.scene.beam.matrices is None else self.bent.about_straight
-
-    @cached_property
-    def _straight(self) -> Equations:
-        """Equations of the straight beam; for bent finite elements, in well-conditioned coordinates."""
-        straight, has_mesh = self.over(), self.discretization.order is not None
-        return straight.of_unit_stiffness() if has_mesh and self.scene.physics.large_deflection else straight
+        return self.over() if self.scene.beam.matrices is None else self.bent.about_straight
 
     def over(self, spaces: Spaces | None = None) -> Equations:
         """Build the equations of motion of the straight beam, in given functions or the discretization's."""
@@ -76,7 +70,9 @@ class Model(FieldsOnly):
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
-        return assemble_over(scene, spaces or self.discretization.spaces(self.scene.modelled_beam))
+        straight = assemble_over(scene, spaces or self.discretization.spaces(self.scene.modelled_beam))
+        is_bent_mesh = self.scene.physics.large_deflection and self.discretization.order is not None
+        return straight.of_unit_stiffness() if is_bent_mesh else straight
 
     @cached_property
     def coupling(self) -> dict[str, np.ndarray]:
@@ -102,7 +98,8 @@ class Model(FieldsOnly):
         # The import is inside the function because few scenes need the module.
         from beamdyn.equations.beam_in_space.rotating_beam import assemble_beam_in_space
 
-        return assemble_beam_in_space(self.scene, self.discretization, self._straight)
+        straight = self.equations if self.scene.beam.matrices is None else self.over()
+        return assemble_beam_in_space(self.scene, self.discretization, straight)
 
     @cached_property
     def coarse_solver(self) -> Eigensolver:
