@@ -58,6 +58,7 @@ _BENT = Words(
 )
 _LOST = "at this speed the beam that {} has no stiffness against further bending or twisting"
 _KEPT = "the beam that {} was followed up to the largest speed tried, and stays stable"
+_UNCONFIRMED = "no second model confirms that the beam stays stable: a finer one may lose stability"
 # Number of functions of a model that only determines whether rotation loads the beam transversely.
 _FUNCTIONS = 5
 
@@ -76,7 +77,8 @@ class CriticalPoint(SceneResult, StatesModelError):
         Critical speed [rad/s]; inf if there is none, or if none was found (see `none_below`); 0 if the beam
         is unstable about a hinge at every speed.
     error : float
-        Estimated relative error of the speed; 0 if a theoretical argument decides, inf if it is unresolved.
+        Estimated relative error of the speed; 0 if a theoretical argument decides, or if two models in turn
+        show that a bent beam stays stable; inf if it is unresolved.
     none_below : float
         No critical speed is below this value [rad/s]: `speed` itself if it was found, otherwise a guaranteed
         bound, or inf if there is none.  With an error of 0, only the inertia of tilting sections can buckle
@@ -113,7 +115,8 @@ class CriticalPoint(SceneResult, StatesModelError):
             yield error_at_most(self.error)
         else:
             bounded = np.isfinite(self.none_below)
-            yield f"none below {self.say_speed(self.none_below)}" if bounded else "none"
+            below = "found up to" if self.of_bent_beam and self.error else "below"
+            yield f"none {below} {self.say_speed(self.none_below)}" if bounded else "none"
         yield self.reason
 
     @cached_property
@@ -297,10 +300,12 @@ def _of_bent_beam(
     warnings = [*warn_of_left_out(scene)]
     if is_lost and tolerance is not None:
         warnings += warn_of_missed_tolerance(found.error, tolerance)
+    elif not is_lost and found.error:
+        warnings.append(Statement(_UNCONFIRMED, kind=NO_ANSWER))
     bending = "its load bends or compresses" if scene.tip_load.acts else "rotation bends"
     return CriticalPoint(
         speed=found.speed if is_lost else np.inf,
-        error=found.error if is_lost else 0.0,
+        error=found.error,
         none_below=found.speed,
         reason=(_LOST if is_lost else _KEPT).format(bending),
         warnings=tuple(warnings),

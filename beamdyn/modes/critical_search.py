@@ -121,7 +121,8 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
 def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, bool]:
     """Refine the speed at which a beam that rotation bends loses stability; also return whether one exists.
 
-    If the beam stays stable, the returned speed is the largest one that was tried.
+    If the beam stays stable, the returned speed is the largest one that was tried, and its error is 0 if two
+    models in turn show that it stays stable, else inf.
     """
     found, is_lost = compare_bent(next(models))
     if found.model.discretization.order is not None:
@@ -136,7 +137,7 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
         if is_lost and was_lost:
             # Bases that do not resolve a boundary layer yet differ little from those with two functions less.
             found = replace(found, error=max(found.error, abs(before / found.speed - 1)))
-    return found, is_lost
+    return (found if is_lost or not is_confirmed else replace(found, error=0.0)), is_lost
 
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:

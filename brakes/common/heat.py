@@ -346,12 +346,12 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     )
 
 
+@np.errstate(divide="ignore", invalid="ignore")  # a brake without torque turns by an infinite angle
 def _rise_in_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute the temperature rise of a stop [K], nan if it does not end, and the status of the stop."""
     duty, load = path.duty, np.asarray(path.duty.load_torque)
     low = duty.rise_of_a_stop + 0 * start
-    with np.errstate(divide="ignore", invalid="ignore"):
-        most = low / np.maximum(1 - load / path.least(start), _EPS)
+    most = low / np.maximum(1 - load / path.least(start), _EPS)
     high = np.where(np.isfinite(path.last), path.last - start, most)
 
     def over(rise: np.ndarray) -> np.ndarray:

@@ -104,6 +104,13 @@ def test_a_stop_ends_up_to_the_load_at_which_the_lining_fades_before():
         assert drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu).status == status
 
 
+@pytest.mark.parametrize("load", [0.0, 5.0])
+def test_a_brake_without_friction_never_stops_without_a_warning(load):
+    """Its torque is 0: the angle of a stop was a division by 0."""
+    duty = drum.Duty(20.0, 50.0, 5.0, load_torque=load, stops=3)
+    assert drum.repeat_stops(duty, 0.0, lambda mu: 1000.0 * mu).status == "never stops"
+
+
 def test_cases_together_are_those_one_by_one():
     loads, stops = np.array([0.0, 100.0, 350.0]), np.array([1.0, 3.0, 2.0])
     given = {"inertia": 40.0, "speed": 50.0, "heated_mass": 6.0, "friction_curve": CURVE}

@@ -11,6 +11,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from benchmarks.cases.scenes import HARVESTER, SHORT_SPIN_UP
 
 ELASTICA = bd.Physics(large_deflection=True)
@@ -135,3 +136,34 @@ def test_refuses_the_root_strain(run: bd.Transient) -> None:
 def test_refuses_an_integrator_of_linear_equations() -> None:
     with pytest.raises(InvalidValue, match="method"):
         bd.simulate(STEADY, 0.02, 3, method=bd.GaussCollocation)
+
+
+IN_SPACE = bd.Physics(planes=2, rotary_inertia=True, torsion=True, large_deflection=True)
+
+
+@pytest.mark.parametrize(("physics", "bending_angle"), [(ELASTICA, 0.0), (IN_SPACE, 0.5)])
+def test_finite_elements_move_as_polynomials_do(physics: bd.Physics, bending_angle: float) -> None:
+    """Their coordinates differ from nodal values; modes taken for those moved the tip by a tenth."""
+    mount = bd.Mount(0.215, math.pi / 4, bending_angle)
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    moved = bd.Scene(beam, mount, bd.SpinUp(80.0, 0.05), gravity=9.81, physics=physics)
+    t = np.linspace(0, 0.05, 6)
+    elements, basis = (
+        bd.simulate(moved, 0.05, modes=4, discretization=each).deflection(t)
+        for each in (bd.Fem(16), bd.Ritz(12))
+    )
+    np.testing.assert_allclose(elements, basis, rtol=0, atol=1e-3 * np.abs(basis).max())
+    elements, basis = (
+        bd.steady_response(replace(moved, motion=None), [60.0], 3, discretization=each).bound
+        for each in (bd.Fem(16), bd.Ritz(12))
+    )
+    np.testing.assert_allclose(elements, basis, rtol=1e-3)
+
+
+def test_modes_of_finite_elements_in_space_have_their_own_stiffness() -> None:
+    """Twist in other coordinates than nodal values was taken for nodal values."""
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    model = Model(bd.Scene(beam, bd.Mount(0.215, 1.0, 0.5), physics=IN_SPACE), bd.Fem(8))
+    modal = reduce_to_modes(model.bent.about_straight, ModalBasis(3))
+    stiffness, own = model.bent.reduced(modal).beam.stiffness, modal.matrices[0]["unity"]
+    np.testing.assert_allclose(stiffness, own, rtol=0, atol=1e-9 * np.abs(own).max())

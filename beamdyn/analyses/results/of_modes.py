@@ -231,8 +231,11 @@ def critical_answer(result: bd.CriticalPoint) -> Group:
         said = Text(f"no critical speed: {in_files(result.reason)}")
     elif math.isinf(result.speed):
         bound = unit.say(result.none_below, 4)
-        found = f"no critical speed found; there is certainly none below {bound}"
-        said = Text(found if result.error else f"no critical speed below {bound}: {result.reason}")
+        if result.error and not result.of_bent_beam:
+            said = Text(f"no critical speed found; there is certainly none below {bound}")
+        else:
+            below = "found up to" if result.error else "below"
+            said = Text(f"no critical speed {below} {bound}: {result.reason}")
     elif not result.speed:
         where = "at rest already" if result.of_bent_beam else "at every speed"
         said = Text(f"critical speed: 0 {unit.name}; the beam is unstable {where}: {result.reason}")
