@@ -26,8 +26,8 @@ _OF_SHORTEST = 4 * float(np.finfo(float).eps)
 # Relative rounding error of the speed at which a bent beam loses stability: its stiffness is a small sum of
 # large terms.
 _ROUNDING_OF_BENT = 1e-10
-# Smallest error target for meshes of a bent beam, because each mesh costs as much as all coarser meshes.
-_MESHES_OF_BENT = 1e-5
+# Smallest error targets for bases and meshes of a bent beam, because each costs as much as all coarser ones.
+_BASES_OF_BENT, _MESHES_OF_BENT = 1e-6, 1e-5
 _TO_HALF = 4  # number of times that a basis is made coarser to get one of about half its size
 
 
@@ -125,8 +125,8 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
     models in turn show that it stays stable, else inf.
     """
     found, is_lost = compare_bent(next(models))
-    if found.model.discretization.order is not None:
-        target = max(target, _MESHES_OF_BENT)
+    has_mesh = found.model.discretization.order is not None
+    target = max(target, _MESHES_OF_BENT if has_mesh else _BASES_OF_BENT)
     is_confirmed = False  # one model in which the beam stays stable may be too coarse to lose stability
     while (found.error > max(target, 3 * found.rounding) if is_lost else not is_confirmed) and (
         finer := next(models, None)

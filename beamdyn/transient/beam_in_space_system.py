@@ -47,8 +47,7 @@ class BeamInSpaceSystem:
     @classmethod
     def of_model(cls, model: Model, basis: ModalBasis, motion: Motion) -> Self:
         """Build the equations of a model with large deflection, in the coordinates of a modal basis."""
-        bends = model.scene.bends_in_space
-        modal = reduce_to_modes(model.bent.about_straight if bends else model.equations, basis)
+        modal = reduce_to_modes(model.bent.about_straight, basis)
         return cls(model.bent.reduced(modal), motion, model.scene.physics.branch)
 
     @property

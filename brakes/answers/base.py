@@ -39,7 +39,6 @@ from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import Provenance, Result, plain
 from beamdyn.common.screens.screen_parts import Handle, KeyResult, Slider
 from brakes.answers.tables import format_number
-from brakes.config.load import CurveQuantity
 
 FileModel = TypeVar("FileModel", bound=BaseModel)
 
@@ -428,7 +427,7 @@ class ArrayBrakeType(BrakeType[FileModel]):
     def sweep_inputs(self, design: FileModel, tables: Mapping[str, Any]) -> Sequence[Input]:
         """Describe inputs in the design's tables: numbers, and choices, which sweeps refuse by a message."""
         there = [entry for entry in describe(type(design)) if getattr(design, entry.path.partition(".")[0])]
-        single = [each for each in there if not isinstance(each.quantity, CurveQuantity)]
+        single = [each for each in there if not each.quantity.is_list]
         return [each for each in single if each.quantity.unit or each.quantity.symbol or each.choices]
 
     def sweep_cases(self, asked: SweepRequest, outputs: Sequence[Output]) -> tuple[InputSweep, Sequence[str]]:

@@ -60,6 +60,8 @@ _SUCH_AS = 'such as [["20 degC", 0.4], ["300 degC", 0.3]]'
 class CurveQuantity(Quantity):
     """An input that is a list of rows, each with a temperature and a friction coefficient."""
 
+    is_list = True
+
     @property
     def bounds(self) -> str:
         """An example of rows, which messages show in place of bounds."""

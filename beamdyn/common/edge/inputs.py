@@ -72,6 +72,7 @@ class Quantity(Described):
 
     # Units that are accepted although they belong to another kind of quantity.
     further_units: ClassVar[tuple[str, ...]] = ()
+    is_list: ClassVar[bool] = False  # whether a file gives it as a list of rows
 
     def parse(self, given: object) -> float:
         """Convert a text or number from a file to SI units, and check its bounds.

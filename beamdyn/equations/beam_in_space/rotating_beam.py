@@ -275,14 +275,13 @@ class RotatingBeam(FieldsOnly):
     def basis_of(self, modal: Equations) -> np.ndarray:
         """Compute the basis of a reduced model, in columns, expressed in the coordinates of the beam.
 
-        The model is reduced from the equations `linear`, or from equations linearized about a state.
+        The model is reduced from equations that are linearized about a state.
         """
         basis = np.zeros((self.beam.size, modal.size))
-        is_linear = modal.deflections is self.linear.deflections  # a reduction keeps them
-        own = (self.linear if is_linear else self.about_straight).shapes
         for name, place in self.linear.blocks.items():
-            shape = modal.shapes[name]
-            basis[place, modal.blocks[shape.block]] = np.linalg.solve(own[name].matrix, shape.matrix)
+            # The first direction in which a block deflects the beam has a name of its own, or the block's.
+            shape = modal.shapes.get(f"{name}, {_DIRECTIONS[0]}", modal.shapes[name])
+            basis[place, modal.blocks[shape.block]] = shape.matrix
         return basis
 
     def nearest(self, other: RotatingBeam, q: np.ndarray) -> np.ndarray:
