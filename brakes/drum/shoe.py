@@ -102,7 +102,8 @@ class Shoe:
         refuse(y >= -least, "pivot[1]", self.pivot[1], "m", bound, remedy)
         far, most = np.hypot(b, y), 2 * np.asarray(self.drum_radius)
         name, bound = "distance of the pivot from the centre", "more than two drum radii, {limit}"
-        refuse(far > most + 2 * least, name, far, "m", bound, limit=most)
+        remedy = "move the pin nearer, or check units"
+        refuse(far > most + 2 * least, name, far, "m", bound, remedy, limit=most)
         above = "the force must act above the pin (at -c)"
         refuse(self.force_arm - y <= least, "force_arm", self.force_arm, "m", above)
         bound = "the arc is empty: it must exceed {other}"

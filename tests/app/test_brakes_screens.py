@@ -257,7 +257,7 @@ def test_numbers_beyond_all_range_are_named_as_they_stand_there(path, given):
 @pytest.mark.parametrize(
     "path, given, words",
     [
-        ("shoe.drum_radius", "7 mm", "from the centre = 111.803 mm: more than two drum radii, 14 mm"),
+        ("shoe.drum_radius", "7 mm", "from the centre = 111.803 mm: more than two drum radii, 14 mm; move"),
         ("brake.drum_radius", "7 mm", "distance of tip from the centre = 119.38 mm"),
         ("second_shoe.pivot_offset", "500 mm", "second_shoe: distance of the pivot from the centre = 511."),
         ("dimensions.pivot_radius", "0 mm", "give the radius of the pivot"),

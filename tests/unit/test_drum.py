@@ -48,7 +48,7 @@ def test_lengths_are_positive(name, value):
         ({"lining": (-0.5, 1.0), "pivot": (-0.05, -0.11)}, ["overlaps the pin"]),
         ({"lining": 1.0}, ["lining", "two numbers"]),
         ({"pivot": (0.0, 0.11)}, ["pivot[1]", "below"]),
-        ({"pivot": (20.0, -110.0)}, ["pivot", "two drum radii", "give m"]),
+        ({"pivot": (20.0, -110.0)}, ["pivot", "more than two drum radii, 0.2", "check units"]),
         ({"force_arm": -0.11}, ["force_arm", "above the pin"]),
         ({"pressure_zero": "pin"}, ["pressure_zero = 'pin'", "'axis'", "'pivot'"]),
         ({"lining": (0.5, np.array([1.0, 1.5])), "force_arm": np.ones(3)}, ["broadcast", "(2,)", "(3,)"]),
