@@ -83,7 +83,7 @@ class CriticalPoint(SceneResult, StatesModelError):
         No critical speed is below this value [rad/s]: `speed` itself if it was found, otherwise a guaranteed
         bound, or inf if there is none.  With an error of 0, only the inertia of tilting sections can buckle
         the beam above this bound, far outside linear theory.  If rotation bends the beam in space, its
-        equilibria were computed up to this speed.
+        equilibria were computed up to this speed, which is no bound where the error is inf.
     reason : str
         Why there is a critical speed or none, or why this is not known.
     warnings : tuple of str

@@ -124,20 +124,23 @@ def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, boo
     If the beam stays stable, the returned speed is the largest one that was tried, and its error is 0 if two
     models in turn show that it stays stable, else inf.
     """
-    found, is_lost = compare_bent(next(models))
-    has_mesh = found.model.discretization.order is not None
-    target = max(target, _MESHES_OF_BENT if has_mesh else _BASES_OF_BENT)
-    is_confirmed = False  # one model in which the beam stays stable may be too coarse to lose stability
-    while (found.error > max(target, 3 * found.rounding) if is_lost else not is_confirmed) and (
-        finer := next(models, None)
-    ):
-        before, was_lost = found.speed, is_lost
-        found, is_lost = compare_bent(finer)
-        is_confirmed = is_lost == was_lost
-        if is_lost and was_lost:
-            # Bases that do not resolve a boundary layer yet differ little from those with two functions less.
-            found = replace(found, error=max(found.error, abs(before / found.speed - 1)))
-    return (found if is_lost or not is_confirmed else replace(found, error=0.0)), is_lost
+
+    def finer(before: tuple[FoundSpeed, bool]) -> tuple[FoundSpeed, bool] | None:
+        if (model := next(models, None)) is None:
+            return None
+        found, is_lost = compare_bent(model)
+        if is_lost != before[1]:  # one model in which the beam stays stable may be too coarse
+            return found, is_lost
+        # Bases that do not resolve a boundary layer yet differ little from those with two functions less.
+        change = abs(before[0].speed / found.speed - 1)
+        return replace(found, error=max(found.error, change) if is_lost else 0.0), is_lost
+
+    def meets(answer: tuple[FoundSpeed, bool]) -> bool:
+        found, _ = answer
+        least = _BASES_OF_BENT if found.model.discretization.order is None else _MESHES_OF_BENT
+        return found.error <= max(target, least, 3 * found.rounding)
+
+    return refine(compare_bent(next(models)), finer, meets)
 
 
 def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:

@@ -279,7 +279,7 @@ class RotatingBeam(FieldsOnly):
         """
         basis = np.zeros((self.beam.size, modal.size))
         for name, place in self.linear.blocks.items():
-            # The first direction in which a block deflects the beam has a name of its own, or the block's.
+            # Named with its direction, a shape is in the beam's coordinates; else that of the block is.
             shape = modal.shapes.get(f"{name}, {_DIRECTIONS[0]}", modal.shapes[name])
             basis[place, modal.blocks[shape.block]] = shape.matrix
         return basis

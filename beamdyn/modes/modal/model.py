@@ -65,14 +65,18 @@ class Model(FieldsOnly):
         return self.over() if self.scene.beam.matrices is None else self.bent.about_straight
 
     def over(self, spaces: Spaces | None = None) -> Equations:
-        """Build the equations of motion of the straight beam, in given functions or the discretization's."""
+        """Build the equations of motion of the straight beam, in given functions or the discretization's.
+
+        For large deflection, finite elements have coordinates in which their stiffness is well-conditioned.
+        """
         if self.scene.chooses_physics:  # `Scene` skips this check for physics "auto"
             check_axis(self.scene.beam, self.scene.physics)
         bent = self.scene.bends_in_space
         scene = replace(self.scene, beam=self.scene.modelled_beam) if bent else self.scene
         straight = assemble_over(scene, spaces or self.discretization.spaces(self.scene.modelled_beam))
-        is_bent_mesh = self.scene.physics.large_deflection and self.discretization.order is not None
-        return straight.of_unit_stiffness() if is_bent_mesh else straight
+        if self.scene.physics.large_deflection and self.discretization.order is not None:
+            return straight.of_unit_stiffness()
+        return straight
 
     @cached_property
     def coupling(self) -> dict[str, np.ndarray]:
