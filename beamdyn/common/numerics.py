@@ -105,3 +105,9 @@ def integrate_series(series: np.ndarray) -> np.ndarray:
     integral[: len(series) - 1] -= parts[1:]
     integral[0] -= integral.sum(axis=0)
     return integral
+
+
+def number_groups(values: np.ndarray, same: float) -> np.ndarray:
+    """Number groups of equal values, in sorted values (..., k): neighbours within `same` of their size."""
+    apart = np.abs(np.diff(values)) > same * np.abs(values[..., 1:])
+    return np.concatenate([np.zeros_like(values[..., :1], int), np.cumsum(apart, axis=-1)], axis=-1)

@@ -46,6 +46,7 @@ from beamdyn.modes.model_error.added_effects import list_effects
 from beamdyn.modes.model_error.effect_choice import PHYSICS_TOLERANCE, EffectSizes, choose_by
 from beamdyn.modes.model_error.left_out_changes import left_out_of_critical_speed, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
+from beamdyn.modes.model_error.sharp_bending import warn_of_sharp_bending
 from beamdyn.modes.planes import separate_planes
 from beamdyn.scene.mount import aligned_cos_sin
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
@@ -59,6 +60,7 @@ _BENT = Words(
 _LOST = "at this speed the beam that {} has no stiffness against further bending or twisting"
 _KEPT = "the beam that {} was followed up to the largest speed tried, and stays stable"
 _UNCONFIRMED = "no second model confirms that the beam stays stable: a finer one may lose stability"
+_USUAL_OF_BENT = 1e-5  # relative error of a bent beam's critical speed above which a warning is given
 # Number of functions of a model that only determines whether rotation loads the beam transversely.
 _FUNCTIONS = 5
 
@@ -296,18 +298,20 @@ def _of_bent_beam(
     """Find the speed at which a beam that rotation bends at every speed loses stability."""
     target = affordable_target(scene, discretization, target)
     models = critical_search.models_of_critical_speed(scene, discretization, target, cheapest=True)
-    found, is_lost = critical_search.search_bent(models, target)
-    warnings = [*warn_of_left_out(scene)]
-    if is_lost and tolerance is not None:
-        warnings += warn_of_missed_tolerance(found.error, tolerance)
-    elif not is_lost and found.error:
+    found = critical_search.search_bent(models, target)
+    loss, at = found.loss, Words("at ", Speeds(found.speed))
+    curvature = partial(found.model.bent.curvature, loss.q[None])
+    warnings = [*warn_of_left_out(scene), *warn_of_sharp_bending(scene, curvature, lambda _: at)]
+    if loss.is_lost:
+        warnings += _warn_of_error(found.error, tolerance, _USUAL_OF_BENT)
+    elif found.error:
         warnings.append(Statement(_UNCONFIRMED, kind=NO_ANSWER))
     bending = "its load bends or compresses" if scene.tip_load.acts else "rotation bends"
     return CriticalPoint(
-        speed=found.speed if is_lost else np.inf,
+        speed=found.speed if loss.is_lost else np.inf,
         error=found.error,
         none_below=found.speed,
-        reason=(_LOST if is_lost else _KEPT).format(bending),
+        reason=(_LOST if loss.is_lost else _KEPT).format(bending),
         warnings=tuple(warnings),
         provenance=_made_by(found, start),
         scene=scene,
@@ -379,15 +383,19 @@ def _warnings(
         said = f"{exists} ({buckling.why}), but {found.model.discretization} finds none: "
         yield Statement(said, "there is certainly none below ", Speeds(none_below, digits=4), kind=NO_ANSWER)
         return
-    if tolerance is not None:
-        yield from warn_of_missed_tolerance(found.error, tolerance)
-    elif found.error > (PLATE_TARGET if scene.models_width else 1e-6):
-        said = f"the estimated relative error of the critical speed is {found.error:.1g}"
-        quantity = "estimated relative error"
-        yield Statement(said, kind=TOLERANCE, quantity=quantity, value=found.error, limit=1e-6)
+    yield from _warn_of_error(found.error, tolerance, PLATE_TARGET if scene.models_width else 1e-6)
     if _is_loaded_across(scene):  # the beam bends far before it reaches the critical speed
         said = "rotation bends the beam at every speed, so that it does not buckle as a straight one does: "
         yield Statement(said, Speeds(found.speed), f" is {OUTSIDE}", kind=OUTSIDE)
+
+
+def _warn_of_error(error: float, tolerance: float | None, usual: float) -> Iterator[Statement]:
+    """Yield a warning if the relative error exceeds the tolerance or, without one, the usual error."""
+    if tolerance is not None:
+        yield from warn_of_missed_tolerance(error, tolerance)
+    elif error > usual:
+        said = f"the estimated relative error of the critical speed is {error:.1g}"
+        yield Statement(said, kind=TOLERANCE, quantity="estimated relative error", value=error, limit=usual)
 
 
 # Choice of the physical effects ---------------------------------------------------------------------

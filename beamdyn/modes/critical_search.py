@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
@@ -12,7 +13,7 @@ import numpy as np
 from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, SLOW_BASES, refine
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
 from beamdyn.modes.modal.distance_across import distance_across
-from beamdyn.modes.modal.equilibrium import find_loss_of_stability
+from beamdyn.modes.modal.equilibrium import StabilityLoss, find_loss_of_stability
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene
@@ -26,8 +27,7 @@ _OF_SHORTEST = 4 * float(np.finfo(float).eps)
 # Relative rounding error of the speed at which a bent beam loses stability: its stiffness is a small sum of
 # large terms.
 _ROUNDING_OF_BENT = 1e-10
-# Smallest error targets for bases and meshes of a bent beam, because each costs as much as all coarser ones.
-_BASES_OF_BENT, _MESHES_OF_BENT = 1e-6, 1e-5
+_TARGET_OF_BENT = 1e-5  # smallest error target of a bent beam: each model costs as much as all coarser ones
 _TO_HALF = 4  # number of times that a basis is made coarser to get one of about half its size
 
 
@@ -118,42 +118,48 @@ def compare_critical_speeds(model: Model) -> FoundSpeed:
 # Beams that rotation bends at every speed -----------------------------------------------------------
 
 
-def search_bent(models: Iterator[Model], target: float) -> tuple[FoundSpeed, bool]:
-    """Refine the speed at which a beam that rotation bends loses stability; also return whether one exists.
+@dataclass(frozen=True)
+class FoundLoss(FoundSpeed):
+    """Speed at which a bent beam loses stability, with its error.
 
-    If the beam stays stable, the returned speed is the largest one that was tried, and its error is 0 if two
-    models in turn show that it stays stable, else inf.
+    If the beam stays stable, `speed` is the largest one that was tried; `loss` its last stable equilibrium.
     """
 
-    def finer(before: tuple[FoundSpeed, bool]) -> tuple[FoundSpeed, bool] | None:
-        if (model := next(models, None)) is None:
-            return None
-        found, is_lost = compare_bent(model)
-        if is_lost != before[1]:  # one model in which the beam stays stable may be too coarse
-            return found, is_lost
-        # Bases that do not resolve a boundary layer yet differ little from those with two functions less.
-        change = abs(before[0].speed / found.speed - 1)
-        return replace(found, error=max(found.error, change) if is_lost else 0.0), is_lost
+    loss: StabilityLoss
 
-    def meets(answer: tuple[FoundSpeed, bool]) -> bool:
-        found, _ = answer
-        least = _BASES_OF_BENT if found.model.discretization.order is None else _MESHES_OF_BENT
-        return found.error <= max(target, least, 3 * found.rounding)
+
+def search_bent(models: Iterator[Model], target: float) -> FoundLoss:
+    """Refine the speed at which a beam that rotation bends loses stability, or up to which it is stable.
+
+    If it stays stable, the error is 0 if two models in turn show this, else inf.
+    """
+
+    def finer(before: FoundLoss) -> FoundLoss | None:
+        model = next(models, None)
+        return None if model is None else compare_bent(model, before)
+
+    def meets(found: FoundLoss) -> bool:
+        return found.error <= max(target, _TARGET_OF_BENT)
 
     return refine(compare_bent(next(models)), finer, meets)
 
 
-def compare_bent(model: Model) -> tuple[FoundSpeed, bool]:
-    """Find the speed at which the bent beam loses stability; also return whether such a speed was found.
+def compare_bent(model: Model, before: FoundLoss | None = None) -> FoundLoss:
+    """Find the speed at which a bent beam loses stability, and its error from a coarser model.
 
-    The error of the speed is estimated by comparison with the coarser model.
+    The coarser model is that of the result `before`.  Without it, a slightly coarser model is solved; that
+    neither loses stability then claims nothing, since both may be too coarse.
     """
-    lost = (find_loss_of_stability(each.deflected.load) for each in (model, model.compared))
-    (squared, is_lost), (of_coarse, also) = lost
-    distance = abs(of_coarse - squared)
-    error = _margin(model) * distance / (2 * squared) + _ROUNDING_OF_BENT if distance else _ROUNDING_OF_BENT
-    error = error if is_lost and also else np.inf
-    return FoundSpeed(model, model.compared, float(np.sqrt(squared)), error, _ROUNDING_OF_BENT), is_lost
+    loss = find_loss_of_stability(model.deflected.load)
+    coarse = model.compared if before is None else before.model
+    of_coarse = find_loss_of_stability(coarse.deflected.load) if before is None else before.loss
+    error = np.inf
+    if loss.is_lost and of_coarse.is_lost:
+        distance = abs(of_coarse.squared - loss.squared)
+        error = _ROUNDING_OF_BENT + (distance and _margin(model) * distance / (2 * loss.squared))
+    elif before is not None and loss.is_lost == of_coarse.is_lost:
+        error = 0.0
+    return FoundLoss(model, coarse, math.sqrt(loss.squared), error, _ROUNDING_OF_BENT, loss)
 
 
 def _margin(model: Model) -> float:

@@ -32,7 +32,7 @@ from beamdyn.modes.modal.equilibrium import DeflectedSolver, find_bent
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
+from beamdyn.modes.model_error.sharp_bending import warn_of_sharp_bending
 from beamdyn.modes.modes import provenance_of
 from beamdyn.scene.mount import Mount, aligned_cos_sin
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
@@ -198,7 +198,7 @@ def equilibrium(
     growth = float(np.real(solution.eigen.eigenvalue).max())
     error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_two else 1.0)
     at = Words("at ", Speeds(float(speeds[0])))
-    flat = warn_of_suppressed_camber(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
+    sharp = warn_of_sharp_bending(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
     loaded = "a small transverse force at the tip leads to a stable equilibrium, if there is one"
     remedy = loaded if scene.tip_load.acts else 'branch="bent" gives the stable one, on the opposite side'
     said = "the equilibrium is unstable ", at, f": a small motion grows at {growth:.3g} 1/s; {remedy}"
@@ -212,7 +212,7 @@ def equilibrium(
         error=float(error) + _rounding(solver.load, q, speeds[0] ** 2) * scene.beam.length,
         stable=growth <= 0,
         growth_rate=max(growth, 0.0),
-        warnings=(*(() if growth <= 0 else (unstable,)), *flat),
+        warnings=(*(() if growth <= 0 else (unstable,)), *sharp),
         provenance=provenance_of(solution, start),
         scene=scene,
         model=solution.model,

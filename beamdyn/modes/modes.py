@@ -377,10 +377,10 @@ def warn_of_modes(
     yield from warn_of_strain(strain.max(initial=0))
     if scene.physics.large_deflection:
         # The import is inside the function because importing takes long.
-        from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
+        from beamdyn.modes.model_error.sharp_bending import warn_of_sharp_bending
 
         bending = partial(model.bent.curvature, model.deflected.equilibria(speeds))
-        yield from warn_of_suppressed_camber(scene, bending, lambda k: Words("at ", Speeds(speeds[k])))
+        yield from warn_of_sharp_bending(scene, bending, lambda k: Words("at ", Speeds(speeds[k])))
     else:
         yield from warn_of_static_deflection(deflection, scene.beam.length, speeds)
         yield from warn_of_straight(deflection, speeds, model)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -115,12 +115,20 @@ def warn_of_strain(strain: float) -> Iterator[Statement]:
         yield Statement(said, kind=LIMITS, quantity="static axial strain", value=strain, limit=LARGE_STRAIN)
 
 
-def warn_of_elastic_limit(strain: np.ndarray) -> Iterator[Statement]:
-    """Yield a warning if strains (nan if unknown) exceed the range of linear elasticity."""
-    largest = np.abs(strain[np.isfinite(strain)]).max(initial=0.0)
-    if largest > LARGE_STRAIN:
+def warn_of_elastic_limit(
+    strain: np.ndarray, say_when: Callable[[int], Words | str] | None = None
+) -> Iterator[Statement]:
+    """Yield a warning if strains (nan if unknown) exceed the range of linear elasticity.
+
+    `say_when` describes the time or speed of an index of the first axis in words.
+    """
+    known = np.where(np.isfinite(strain), np.abs(strain), 0.0)
+    if (largest := float(known.max(initial=0.0))) > LARGE_STRAIN:
+        when = (
+            () if say_when is None else (say_when(int(known.argmax() // math.prod(known.shape[1:]))), " the ")
+        )
         said = f"strain reaches {largest:.2g}: past {LARGE_STRAIN:g} few materials are linearly elastic"
-        yield Statement(said, kind=LIMITS, quantity="strain", value=largest, limit=LARGE_STRAIN)
+        yield Statement(*when, said, kind=LIMITS, quantity="strain", value=largest, limit=LARGE_STRAIN)
 
 
 def warn_of_static_deflection(

@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from beamdyn.common.numerics import number_groups
 from beamdyn.common.plots.campbell import Curves, plot_campbell
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.pictures import Axes
@@ -21,6 +22,7 @@ from beamdyn.scene.motion.base import Line
 from beamdyn.scene.scene import SceneResult
 
 KINDS = ("forced", "parametric")
+_SAME_SPEED = 1e-9  # relative difference of speeds that count as equal
 _STEP = 1e-4  # relative step of the speed for the slope of the frequencies
 _FURTHER_MODES = 2  # number of modes solved in addition: the order of modes may change with speed
 
@@ -70,6 +72,14 @@ class Crossing:
     second_mode: int | None = None
     plane_share: tuple[float, float] = (1.0, 0.0)
     second_plane_share: tuple[float, float] | None = None
+
+
+def order_by_speed(crossings: Sequence[Crossing]) -> tuple[Crossing, ...]:
+    """Sort crossings by speed, and those at one speed by kind and mode, so that rounding does not decide."""
+    by_speed = sorted(crossings, key=lambda crossing: crossing.speed)
+    places = number_groups(np.array([crossing.speed for crossing in by_speed]), _SAME_SPEED)
+    keyed = [(at, each.kind, each.mode, k) for k, (at, each) in enumerate(zip(places, by_speed, strict=True))]
+    return tuple(by_speed[k] for *_, k in sorted(keyed))
 
 
 def label_crossing(line: Line, kind: str, mode: int, second_mode: int | None = None) -> str:

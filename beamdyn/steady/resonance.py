@@ -31,7 +31,7 @@ from beamdyn.scene.motion.base import Line
 from beamdyn.scene.names_elsewhere import WITH_WHEEL
 from beamdyn.scene.scene import Scene, check_scene
 from beamdyn.scene.validity import check_speeds, refuse_tip_load, warn_of_left_out, warn_of_static_deflection
-from beamdyn.steady.crossings import KINDS, Crossing, Crossings
+from beamdyn.steady.crossings import KINDS, Crossing, Crossings, order_by_speed
 from beamdyn.steady.periodic_system import distinct_lines, excitation_lines, periodic_system
 
 _HIGHEST_ORDER = 20  # highest accepted order of lines, whose search takes ten seconds
@@ -128,7 +128,7 @@ def resonance_speeds(
     names = str(model.discretization), str(model.coarser.discretization)
     forced, parametric = (distinct_lines(line for p in parts for line in p.lines[kind]) for kind in (0, 1))
     return Crossings(
-        crossings=tuple(sorted(crossings, key=lambda c: c.speed)),
+        crossings=order_by_speed(crossings),
         lines=tuple(forced),
         speeds=parts[0].loci.speeds,
         frequency=tracked / (2 * np.pi),

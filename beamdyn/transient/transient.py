@@ -24,7 +24,7 @@ from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.model import SPEED_SAMPLES
 from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
-from beamdyn.modes.model_error.suppressed_camber import warn_of_suppressed_camber
+from beamdyn.modes.model_error.sharp_bending import warn_of_sharp_bending
 from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
@@ -384,7 +384,7 @@ class TransientRequest(TransientProblem):
             t, q, _ = solution.path.samples
             assert isinstance(solution.system, BeamInSpaceSystem)
             bending = partial(solution.system.elastica.curvature, q)
-            yield from warn_of_suppressed_camber(scene, bending, lambda k: f"at {t[k]:.4g} s")
+            yield from warn_of_sharp_bending(scene, bending, lambda k: f"at {t[k]:.4g} s")
         else:
             yield from warn_of_deflection(np.array([largest]), scene.beam.length)
         if self.motion.road_multiple is not None:

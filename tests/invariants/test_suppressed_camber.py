@@ -7,7 +7,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.results.statements import MODEL_ERROR
-from beamdyn.modes.model_error.suppressed_camber import tangent_stiffening
+from beamdyn.modes.model_error.sharp_bending import tangent_stiffening
 
 
 def by_cross_section(searle, nu):
@@ -92,3 +92,18 @@ def test_a_strip_that_does_not_camber_says_nothing():
 def test_an_assumed_ratio_is_said():
     (warning,) = said(bent(0.01, None))
     assert "with Poisson's ratio 0.3 assumed" in warning
+
+
+def test_bending_past_linear_elasticity_is_told_by_modes_equilibrium_and_transient():
+    """The strain of the outer fibre is kappa t/2, as far as Searle's parameter b^2 kappa/t tells kappa."""
+    answers = [
+        bd.natural_modes(scene(0.01), 300.0, 1),
+        bd.equilibrium(scene(0.01), 300.0),
+        bd.simulate(scene(0.01, motion=bd.RollingWheel(0.3, 300.0)), 0.005, tolerance=1e-2),
+    ]
+    for answer in answers:
+        (strain,) = (w for w in answer.warnings if "linearly elastic" in w)
+        (searle,) = said(answer)
+        assert strain.value == pytest.approx(searle.value * 0.0002**2 / 2 / 0.01**2, rel=1e-9)
+        assert strain.startswith(searle.split(" the strip")[0] + " the strain reaches 0.0")
+    assert not any("linearly elastic" in w for w in bd.equilibrium(scene(0.01), 50.0).warnings)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.linalg import block_diag
 
 import beamdyn as bd
 from beamdyn.scene.motion.base import check_consistent
@@ -205,6 +206,17 @@ def test_verdicts_with_damping():
     assert verdict(0.9 * turned(1.0, -1.0), form=None)[0] == "stable"
     assert verdict(1.1 * turned(1.0, 2.0), form=None)[0] == "unstable"
     assert verdict((1 - 1e-12) * turned(1.0, 2.0), form=None)[0] == "undecided"
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_multipliers_of_one_magnitude_are_ordered_by_angle(seed):
+    """Turns by three angles, and a matrix of other digits that is similar to it."""
+    rng, turns = np.random.default_rng(seed), (0.3, 1.1, 2.9)
+    blocks = [[[math.cos(a), -math.sin(a)], [math.sin(a), math.cos(a)]] for a in turns]
+    similar = np.eye(6) + 0.1 * rng.standard_normal((6, 6))
+    matrix = similar @ block_diag(*blocks) @ np.linalg.inv(similar)
+    found = multipliers_of(Monodromy(matrix[None], np.array([1e-14]), np.ones(1), None, 1))
+    np.testing.assert_allclose(np.angle(found.value[0]), [2.9, 1.1, 0.3, -0.3, -1.1, -2.9], rtol=1e-12)
 
 
 def test_errors_cover_a_jordan_block():

@@ -14,6 +14,7 @@ from beamdyn.equations.equations_of_motion import Equations
 from beamdyn.modes.modal.discretization_choice import choose_model
 from beamdyn.modes.modal.line_roots import bracket
 from beamdyn.scene.motion.base import Motion, MotionSample
+from beamdyn.steady.crossings import KINDS, order_by_speed
 from benchmarks.cases.scenes import HARVESTER
 
 
@@ -356,3 +357,16 @@ def test_lines_that_rounding_sets_apart_are_one(change: float) -> None:
     )
     assert [line.name for line in near.lines] == [line.name for line in exact.lines]
     assert (len(near), near.unlisted, near.may_peak) == (len(exact), exact.unlisted, exact.may_peak)
+
+
+def test_crossings_at_one_speed_keep_their_order_whatever_rounding_makes_of_it() -> None:
+    """Twice a frequency meets twice a line where the frequency meets the line."""
+    first = bd.resonance_speeds(ROLLING, top_speed=90.0, modes=1).crossings[0]
+    around = [
+        replace(first, kind=kind, speed=first.speed * (1 + k * 1e-13)) for kind in KINDS for k in (2, -1)
+    ]
+    later = replace(first, mode=3, speed=first.speed * (1 + 1e-8))
+    ordered = order_by_speed([later, *around[::-1], replace(first, mode=2)])
+    assert [c.kind for c in ordered] == ["forced"] * 3 + ["parametric"] * 2 + ["forced"]
+    assert [c.mode for c in ordered] == [1, 1, 2, 1, 1, 3]
+    assert order_by_speed([]) == ()

@@ -277,8 +277,7 @@ def find_loss_between(load: Loading, before: Point, after: Point) -> float:
     diagonal = np.diag(load.at(before.q, before.p).change)
 
     def least(p: float) -> float:
-        stiffness = load.at(find_at(load, before, after, p), p).change
-        return float(scaled_eigenvalues(stiffness, diagonal)[0])
+        return float(scaled_eigenvalues(load.at(find_at(load, before, after, p), p).change, diagonal)[0])
 
     return float(brentq(least, before.p, after.p, xtol=1e-14 * after.p))
 
@@ -290,8 +289,7 @@ def find_at(load: Loading, before: Point, after: Point, p: float) -> np.ndarray:
     between = before.q + (p - before.p) / (after.p - before.p) * (after.q - before.q)
     with suppress(NotConverged):
         return solve_at(load, between, p, np.abs((after.q - before.q) @ load.angles).max() / 2)
-    point = _find_between(load, before, after, lambda point: (point.p - p) / load.scale)
-    return solve_at(load, point.q, p)
+    return solve_at(load, _find_between(load, before, after, lambda point: (point.p - p) / load.scale).q, p)
 
 
 def _find_between(load: Loading, before: Point, after: Point, function: Callable[[Point], float]) -> Point:

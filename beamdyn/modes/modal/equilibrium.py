@@ -9,7 +9,7 @@ import math
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from scipy.linalg import eigh
@@ -83,35 +83,45 @@ def follow_to(
     return found
 
 
-def find_loss_of_stability(load: Loading) -> tuple[float, bool]:
-    """Find the squared speed [rad2/s2] at which the equilibrium continued from rest loses stability.
+class StabilityLoss(NamedTuple):
+    """Where the equilibrium continued from rest loses stability, or how far it was followed without a loss.
 
-    Returns
-    -------
+    Parameters
+    ----------
     squared : float
-        Squared speed [rad2/s2]; if stability is not lost, the largest one reached.
+        Squared speed [rad2/s2] of the loss; if stability is not lost, the largest one reached.
     is_lost : bool
         Whether stability is lost by a singular stiffness: the branch turns back, or the bent beam buckles.
+    q : ndarray, shape (n,)
+        Coordinates of the last stable equilibrium.
     """
+
+    squared: float
+    is_lost: bool
+    q: np.ndarray
+
+
+def find_loss_of_stability(load: Loading) -> StabilityLoss:
+    """Find the speed at which the equilibrium continued from rest loses stability."""
     top = _SOUGHT**2 * load.scale
     if count_negative(load, load.at_rest, 0.0):
-        return 0.0, True
+        return StabilityLoss(0.0, True, load.at_rest)
     if not load.bends:
         change = load.elastica.at(load.at_rest).under(load.growing).change
         # Both matrices are symmetric, as every load here has a potential.
         softening = max(eigh(-change, load.at(load.at_rest, 0.0).change, eigvals_only=True)[-1], 0.0)
-        return (float(1 / softening), True) if softening * top > 1 else (top, False)
+        is_lost = softening * top > 1
+        return StabilityLoss(float(1 / softening) if is_lost else top, is_lost, load.at_rest)
     before = continuation.start_curve(load, load.at_rest, 0.0, 1.0)
     with suppress(NotConverged):
         for after in continuation.follow(load, before, easy=_PATIENT):
-            if not after.p_rate:
-                return after.p, True
-            if count_negative(load, after.q, after.p):
-                return continuation.find_loss_between(load, before, after), True
+            if not after.p_rate or count_negative(load, after.q, after.p):
+                lost = continuation.find_loss_between(load, before, after) if after.p_rate else after.p
+                return StabilityLoss(lost, True, before.q)
             before = after
             if after.p > top or np.abs(after.q @ load.angles).max() > _COILED:
                 break
-    return before.p, False
+    return StabilityLoss(before.p, False, before.q)
 
 
 def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
@@ -194,8 +204,8 @@ class DeflectedSolver(Solver):
             return np.inf
         if self.elastica.load is None:
             return super().critical_speed
-        squared, is_lost = find_loss_of_stability(self.load)
-        return math.sqrt(squared) if is_lost else np.inf
+        loss = find_loss_of_stability(self.load)
+        return math.sqrt(loss.squared) if loss.is_lost else np.inf
 
     eigenvalues = Eigensolver.eigenvalues
 

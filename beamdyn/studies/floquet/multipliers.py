@@ -20,11 +20,13 @@ from functools import cached_property
 
 import numpy as np
 
+from beamdyn.common.numerics import number_groups
 from beamdyn.studies.floquet.monodromy import Monodromy
 
 STABLE, UNSTABLE, UNDECIDED = "stable", "unstable", "undecided"
 # Backward error of the eigenvalue solver, relative to the norm of the matrix.
 _EIGENVALUES = 8 * np.finfo(float).eps
+_SAME_MAGNITUDE = 1e-9  # relative difference of magnitudes that count as equal: those of undamped motion
 _SAFETY = 2.0  # safety factor of the first-order bounds
 _DEFINITE = 1e-6  # ratio of the form's value to its maximum, above which the sign is certain
 
@@ -36,7 +38,7 @@ class Multipliers:
     Parameters
     ----------
     value : ndarray of complex, shape (P, multipliers)
-        Multipliers, by descending magnitude.
+        Multipliers, by descending magnitude, and by descending angle where that is equal.
     error : ndarray, shape (P, multipliers)
         Estimated errors of the multipliers.
     sign : ndarray, shape (P, multipliers), or None
@@ -89,7 +91,7 @@ def multipliers_of(motion: Monodromy) -> Multipliers:
     """Compute the multipliers of monodromy matrices, and their errors."""
     matrix, form = motion.matrix, motion.form
     value, right = np.linalg.eig(matrix)
-    order = np.argsort(-np.abs(value), axis=1, kind="stable")
+    order = _order(value)
     value = np.take_along_axis(value, order, axis=1)
     right = np.take_along_axis(right, order[:, None, :], axis=2)
     condition = np.linalg.norm(_inverse(right), axis=2) * np.linalg.norm(right, axis=1)
@@ -101,6 +103,14 @@ def multipliers_of(motion: Monodromy) -> Multipliers:
         bound = np.fmin(_SAFETY * first, np.sqrt(_SAFETY * first * gap))
     sign = None if form is None else _krein_sign(value, bound, right, form)
     return Multipliers(value, np.nan_to_num(bound, nan=np.inf), sign, motion.period)
+
+
+def _order(value: np.ndarray) -> np.ndarray:
+    """Find the order of multipliers: by descending magnitude and, if that is equal, by descending angle."""
+    order = np.argsort(-np.abs(value), axis=1, kind="stable")
+    ordered = np.take_along_axis(value, order, axis=1)
+    group = number_groups(np.abs(ordered), _SAME_MAGNITUDE)
+    return np.take_along_axis(order, np.lexsort((-np.angle(ordered), group), axis=1), axis=1)
 
 
 def _inverse(matrix: np.ndarray) -> np.ndarray:

@@ -102,7 +102,7 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
     def spectral_radius(self) -> float:
         """Growth factor of free vibration over a period, from the largest multiplier or the growth rate."""
         known = self.method == MULTIPLIERS
-        return float(np.abs(self.multipliers[0])) if known else math.exp(self.growth_rate * self.period)
+        return float(np.abs(self.multipliers).max()) if known else math.exp(self.growth_rate * self.period)
 
     @cached_property
     def mode_error(self) -> float:

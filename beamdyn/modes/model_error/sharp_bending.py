@@ -1,9 +1,10 @@
-"""Suppressed camber: a strongly bent strip cannot camber freely and is nearly as stiff as a wide plate.
+"""Warnings about sharp bending: of strain past linear elasticity, and of the suppressed camber of a strip.
 
-A strip of width b and thickness t under the curvature kappa cambers freely if b^2 kappa/t (Searle's
-parameter) is small.  Above about 1, camber is suppressed more and more (half of it at 10), because it would
-stretch the strip.  With theta = (3 (1 - nu^2))^(1/4) b (kappa/t)^(1/2) its energy per length, of bending and
-of the stress that camber causes along it, is
+A strongly bent strip cannot camber freely and is nearly as stiff as a wide plate.  A strip of width b and
+thickness t under the curvature kappa cambers freely if b^2 kappa/t (Searle's parameter) is small.  Above
+about 1, camber is suppressed more and more (half of it at 10), because it would stretch the strip.  With
+theta = (3 (1 - nu^2))^(1/4) b (kappa/t)^(1/2) its energy per length, of bending and of the stress that camber
+causes along it, is
 
     U = E I kappa^2 (1 - nu^2 f)/(2 (1 - nu^2)),    f = 2 h/theta,
     h = (cosh theta - cos theta)/(sinh theta + sin theta),
@@ -25,6 +26,7 @@ from beamdyn.common.results.statements import MODEL_ERROR, Statement
 from beamdyn.common.words import Words, percent, told_from
 from beamdyn.modes.model_error.added_effects import ASSUMED_POISSONS_RATIO
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import warn_of_elastic_limit
 
 _CAMBER_DECLINES = 1.0  # Searle's parameter above which camber is suppressed
 _WIDEST = 50.0  # argument theta above which the functions of a curved strip have reached their limits
@@ -46,19 +48,29 @@ def tangent_stiffening(theta: np.ndarray, nu: float) -> np.ndarray:
     return (1 - nu**2 * tangent) / (1 - nu**2)
 
 
-def warn_of_suppressed_camber(
+def warn_of_sharp_bending(
     scene: Scene, bending: Callable[[np.ndarray], np.ndarray], say_when: Callable[[int], Words | str]
 ) -> Iterator[Statement]:
-    """Yield a warning if large deflection bends a strip so far that its camber is suppressed.
+    """Yield warnings if large deflection strains a beam past linear elasticity, or suppresses its camber.
 
     `bending` returns curvatures (k, m) [1/m] in the direction of bending at k speeds or times and x/L (m,);
     `say_when` describes the time or speed of an index in words.
     """
+    xi = np.linspace(0, 1, _STATIONS)
+    curvature = np.abs(bending(xi))
+    if scene.beam.outer_fibre is not None:
+        yield from warn_of_elastic_limit(curvature * scene.beam.outer_fibre(xi), say_when)
+    yield from _warn_of_suppressed_camber(scene, xi, curvature, say_when)
+
+
+def _warn_of_suppressed_camber(
+    scene: Scene, xi: np.ndarray, curvature: np.ndarray, say_when: Callable[[int], Words | str]
+) -> Iterator[Statement]:
+    """Yield a warning if a strip is bent so far that its camber is suppressed."""
     section = scene.beam.section
     if section is None or section.poissons_ratio == 0:
         return  # camber requires Poisson's ratio
-    nu, xi = section.poissons_ratio, np.linspace(0, 1, _STATIONS)
-    curvature = np.abs(bending(xi))
+    nu = section.poissons_ratio
     b, t = section.width(xi), section.thickness(xi)
     searle = b**2 * curvature / t
     if not searle.max(initial=0.0) > _CAMBER_DECLINES:
