@@ -23,6 +23,7 @@ from beamdyn.common.edge.command_options import write_table
 from beamdyn.common.inputs import checks
 from beamdyn.common.results.files import write_text
 from beamdyn.common.words import at_any
+from beamdyn.loads.span_loads import AskedLoads
 
 if TYPE_CHECKING:
     from rich.console import RenderableType
@@ -189,6 +190,8 @@ def loads(
     basis: dict[str, Any] = {"discretization": discretization, "modes": "auto", "tolerance": 1e-5} | chosen
     span = None if window is None else parse_window(window, t_end)
     tables = None
+    if t_end is not None or speeds is not None:
+        AskedLoads.of(scene, **where)  # refuses what the loads cannot have before the long computation
     if t_end is not None:
         result, tables = _in_transient(scene, t_end, span, counting, where, basis)
     elif speeds is not None:

@@ -333,6 +333,7 @@ class AskedLoads:
         cls, scene: Scene, at: Positions | None, points: SectionPoints | None, youngs_modulus: float | None
     ) -> AskedLoads:
         """Check the stations, the points of sections and Young's modulus of a request."""
+        refuse_large_deflection(scene)
         refuse_uncovered_camber(scene)
         start, stations = perf_counter(), stations_at(scene.modelled_beam, at)
         sections = sections_at(scene, stations, points, youngs_modulus)

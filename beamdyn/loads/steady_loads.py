@@ -150,7 +150,6 @@ def steady_loads(
     """
     kind("response", response, SteadyResponse, "steady_response makes one")
     scene, refined = response.scene, response.refined
-    span_loads.refuse_large_deflection(scene)
     asked = span_loads.AskedLoads.of(scene, at, points, youngs_modulus)
     lines = lines_of_response(response, asked.stations, asked.outputs)
     error = np.full(lines.largest.shape, np.inf)

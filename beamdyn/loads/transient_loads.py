@@ -262,7 +262,6 @@ def transient_loads(
     array([0.   , 0.025])
     """
     kind("run", run, Transient, "simulate makes one")
-    span_loads.refuse_large_deflection(run.scene)
     asked = span_loads.AskedLoads.of(run.scene, at, points, youngs_modulus)
     path = LoadPath(run, asked.stations, asked.outputs)
     times = run.t[:: 1 + (len(run.t) - 1) // _MOST_TIMES] if t is None else _times_in(run, t)

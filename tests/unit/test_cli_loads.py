@@ -77,6 +77,23 @@ def test_cycles_without_the_package_that_counts_are_refused_at_once(run, monkeyp
     assert "beamdyn[fatigue]" in err
 
 
+@pytest.mark.parametrize("how", [("--t-end", "0.2 s"), ("--speeds", "1:9:3 rad/s")])
+@pytest.mark.parametrize(
+    ("example", "options", "said"),
+    [
+        ("harvester_oblique.toml", (), "loads along the span of a beam with large deflection"),
+        ("rolling_harvester.toml", ("--at", "1 m"), "--at = "),
+    ],
+)
+def test_what_loads_cannot_have_is_refused_before_the_motion_is_computed(
+    run, monkeypatch, example, options, said, how
+):
+    for long in ("simulate", "steady_response"):
+        monkeypatch.setattr(bd, long, lambda *_, **__: pytest.fail("computed in vain"))
+    code, _, err = run(EXAMPLES / example, *how, *options)
+    assert code == BAD_INPUT and said in err
+
+
 def test_steady_response_over_speed(run, tmp_path):
     path = tmp_path / "steady.csv"
     code, out, _ = run(
