@@ -16,10 +16,13 @@ from beamdyn.app import frequency_screen
 from beamdyn.cli import DONE, NO_ANSWER, main
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.modes.modal import continuation, equilibrium
+from beamdyn.modes.modal.model import Model
 from beamdyn.scene.profile import to_profile
 from benchmarks.cases.elastica import harvester_at
 from tests.conftest import Finished
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
+EPS = float(np.finfo(float).eps)
 BENT = bd.Physics(large_deflection=True)
 SPRING = bd.Mount(0.2, 1.0, root_stiffness=0.0)
 SECOND_HINGE, IN_SPACE = bd.Mount(0.2, 1.0, second_root_stiffness=0.0), bd.Physics(2, large_deflection=True)
@@ -97,6 +100,24 @@ def test_a_near_speed_is_met_in_one_step(monkeypatch: pytest.MonkeyPatch) -> Non
         followed = bd.equilibrium(harvester(45.0), 60.0).tip
     monkeypatch.setattr(continuation, "follow", None)
     np.testing.assert_allclose(bd.equilibrium(harvester(45.0), 60.0).tip, followed, rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("example", "basis", "speed"),
+    [
+        ("iea_15_blade", bd.Ritz(14, "moments"), 0.9),
+        ("iea_15_blade", bd.Ritz(14, "moments"), 1.5),
+        ("harvester_oblique", bd.Ritz(20), 150.0),
+    ],
+)
+@pytest.mark.parametrize("digits", [1, -1, -10, 1000, 1e5])
+def test_a_speed_that_differs_by_rounding_is_reached(
+    example: str, basis: bd.Ritz, speed: float, digits: float
+) -> None:
+    """As when a root finder closes in on the speed at which a frequency meets a line."""
+    solver = Model(bd.load_scene(EXAMPLES / f"{example}.toml"), basis).deflected
+    beside = solver.equilibria(np.array([speed])), solver.equilibria(np.array([speed * (1 + digits * EPS)]))
+    assert np.abs(np.diff(beside, axis=0) @ solver.load.angles).max() < 1e-8  # rounding of a stiff blade
 
 
 def test_no_step_leads_past_where_a_nearly_straight_beam_begins_to_bend() -> None:

@@ -370,3 +370,7 @@ def test_crossings_at_one_speed_keep_their_order_whatever_rounding_makes_of_it()
     assert [c.kind for c in ordered] == ["forced"] * 3 + ["parametric"] * 2 + ["forced"]
     assert [c.mode for c in ordered] == [1, 1, 2, 1, 1, 3]
     assert order_by_speed([]) == ()
+
+
+def test_a_range_of_speeds_whose_squares_underflow_has_no_crossings() -> None:
+    assert bd.resonance_speeds(ROLLING, top_speed=1e-300, modes=1, order=1).crossings == ()

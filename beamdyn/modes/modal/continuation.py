@@ -19,7 +19,8 @@ from beamdyn.equations.beam_in_space.bent_beam import Work
 from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
 from beamdyn.equations.root_motion import Quantity
 
-# First, longest and shortest step along a curve, as an arc length (see `_metric`).
+# First, longest and shortest step along a curve, as an arc length (see `_metric`); rounding makes corrections
+# larger than a shorter step.
 _FIRST, _LONGEST, _SHORTEST = 0.05, 0.2, 1e-7
 _ITERATIONS = 12  # largest number of iterations of Newton's method in a step
 _EASY = 4  # number of iterations in a step up to which the next step is longer
@@ -216,7 +217,7 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
     step = (goals[-1] - start.p) / (start.p_rate * load.scale)
     with suppress(NotConverged):
         if len(goals) == 1 and step < _LONGEST:  # one step is enough if the curve hardly turns
-            q = solve_at(load, start.q + step * start.q_rate, goals[0], _STRAYED * step)
+            q = solve_at(load, start.q + step * start.q_rate, goals[0], max(_STRAYED * step, _SHORTEST))
             turned = (start_curve(load, q, goals[0], towards).q_rate - start.q_rate) @ load.angles
             change = count_negative(load, q, goals[0]) - count_negative(load, start.q, start.p)
             if not change and np.abs(turned).max() < _STRAYED:

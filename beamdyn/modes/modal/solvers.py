@@ -217,10 +217,10 @@ def _solve_ascending(solver: Eigensolver, speeds: np.ndarray, solve: Solve) -> E
 
     Modes are smooth functions of the speed; without gyroscopic terms, of the squared speed.
     """
-    if len(speeds) <= _FEW:
-        return solve(speeds)
     power = 2 if solver.conservative else 1
     known, (low, high) = None, speeds[[0, -1]] ** power
+    if len(speeds) <= _FEW or low == high:  # squares of the slowest speeds are 0
+        return solve(speeds)
     for intervals in _INTERVALS:
         nodes = np.clip(low + (high - low) * (1 + _nodes(intervals)) / 2, low, high) ** (1 / power)
         if known is None:
