@@ -13,7 +13,6 @@ from beamdyn.common.results.statements import joined
 from beamdyn.common.words import InputName, Setting, Words
 from beamdyn.scene.beam import Beam
 from beamdyn.scene.mount import aligned_cos_sin
-from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
 
 EXCLUSIVE = "it cannot be combined with large deflection"
@@ -222,11 +221,10 @@ def list_left_out(scene: Scene) -> Iterator[OmittedEffect]:
     With physics "auto", the model is the Euler-Bernoulli beam, to which an analysis may add any effect except
     torsion, which only adds modes.
     """
-    modelled = replace(scene, physics=Physics()) if scene.chooses_physics else scene
-    for effect in effects_left_out(modelled):
-        reason = effect.reason(modelled)
+    for effect in effects_left_out(scene):
+        reason = effect.reason(scene)
         if scene.chooses_physics and effect.switch and effect is not TORSION:
-            reason = f"{effect.assumption(modelled)}; {_CHOSEN}"
+            reason = f"{effect.assumption(scene)}; {_CHOSEN}"
         yield OmittedEffect(effect.name, reason, effect.switch)
 
 

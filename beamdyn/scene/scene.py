@@ -144,8 +144,8 @@ class Scene(OneLine):
             set_fields(self, beam=beam)
         _check_properties(self.beam, self.physics)
         _check_width(self.beam, self.physics)
-        _check_matrices(self.beam, self.physics)
         if not self.chooses_physics:
+            _check_matrices(self.beam, self.physics)
             check_axis(self.beam, self.physics)
         if self.physics.large_deflection:
             _check_large_deflection(self, self.physics.planes, how_without_large_deflection(self.beam))
@@ -469,6 +469,7 @@ def _without_unmodelled(beam: Beam, physics: Physics) -> Beam:
     unread = (optional | {_SECOND + _BENDING, "torsion_stiffness"}) - _needed_properties(beam, physics).keys()
     unread |= {"twist"} if physics.planes == 1 or not beam.is_twisted else set()
     unread |= set() if physics.torsion else {"warping_stiffness", *OFFSETS}
+    unread |= set() if physics.large_deflection else {"matrices"}
     given: dict[str, Any] = {name: None for name in unread if getattr(beam, name) is not None}
     if beam.tip is not None and beam.tip.offset_across and not physics.torsion:
         given["tip"] = replace(beam.tip, offset_across=0.0)

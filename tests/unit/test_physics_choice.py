@@ -19,6 +19,7 @@ from beamdyn.modes.model_error.effect_choice import EffectSizes, choose_by, choo
 from beamdyn.scene.physics import PhysicsChoice
 from tests.unit.toml_scenes import STRIP_TOML
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 LARGE, SHEAR, ROTARY = "large deflection", "shear deformation", "rotary inertia of sections"
 SECOND, STRETCH, CAMBER = "second plane of bending", "stretch", "camber of sections"
 
@@ -430,3 +431,18 @@ def test_a_curved_axis_is_a_beam_in_space_from_the_start() -> None:
     assert chosen.physics_choice is not None
     given = bd.natural_modes(replace(scene, physics=physics), 10.0, 2, tolerance=0.01)
     np.testing.assert_allclose(chosen.frequency, given.frequency, rtol=1e-6)
+
+
+def test_a_beam_of_section_matrices_is_a_beam_in_space_from_the_start() -> None:
+    """The matrices couple all strains: there is no simpler physics to begin with."""
+    scene = bd.load_scene(EXAMPLES / "iea_15_blade.toml")
+    given, chosen = (bd.natural_modes(s, 0.8, 2) for s in (scene, replace(scene, physics="auto")))
+    assert chosen.scene.physics == scene.physics
+    np.testing.assert_allclose(chosen.frequency, given.frequency, rtol=1e-12)  # the same model
+
+
+@pytest.mark.parametrize("name", ["iea_15_blade", "swept_blade"])
+def test_terms_of_a_beam_that_straight_equations_refuse_are_listed(name: str) -> None:
+    scene = replace(bd.load_scene(EXAMPLES / f"{name}.toml"), physics="auto")
+    left_out = {effect.name: effect.reason for effect in bd.terms(scene).left_out}
+    assert left_out[LARGE].endswith("an analysis adds the effect where it matters")
