@@ -323,3 +323,35 @@ def test_what_is_always_modelled_is_not_to_be_left_out(
     with pytest.raises(InvalidValue, match="leave it out, as this analysis always models large") as refused:
         analysis(scene, 50.0)
     assert refused.value.field == lacking
+
+
+def beck(push: float, across: float = 0.0) -> bd.Scene:
+    """Return an outward beam of unit properties under a force that follows its tip."""
+    load = bd.TipLoad((-push, across, 0.0), follows=True)
+    return bd.Scene(
+        bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi), physics=BENT, tip_load=load
+    )
+
+
+@pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties
+@pytest.mark.parametrize(
+    ("push", "across", "stable"),
+    [
+        (20.04, 0.0, True),
+        (20.5, 0.0, False),  # the first two modes flutter, at rest beyond 20.0509
+        (21.0, 0.02, False),
+        (100.0, 0.0, False),  # the first mode vibrates, and higher ones flutter
+        (100.0, 0.02, False),
+    ],
+)
+@pytest.mark.parametrize("speed", [0.0, 0.3])
+def test_all_modes_decide_whether_an_equilibrium_is_stable(
+    push: float, across: float, stable: bool, speed: float
+) -> None:
+    scene = beck(push, across)
+    modes = bd.natural_modes(scene, speed, modes=6)
+    found, branches = bd.equilibrium(scene, speed), bd.equilibrium_branches(scene, 0.4)
+    assert found.stable == stable
+    assert found.growth_rate == pytest.approx(modes.growth_rate.max(), rel=1e-6, abs=0)
+    assert (branches.branches[0].stable == stable).all()
+    assert math.isnan(branches.critical_speed)  # it may flutter first

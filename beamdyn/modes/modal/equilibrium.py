@@ -209,9 +209,20 @@ class DeflectedSolver(Solver):
         """
         missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
         for v, q in zip(missing.tolist(), self.equilibria(missing), strict=True):
-            solver = (Solver if self.elastica.load is None else LoadedSolver)(self.elastica.at(q).steady())
-            self._solved[v, count] = solver.solve(np.array([v]), count)
+            self._solved[v, count] = self._about(q).solve(np.array([v]), count)
         return Eigen.joined(self._solved[v, count] for v in speeds.tolist())
+
+    def _about(self, q: np.ndarray) -> Solver:
+        """Build the solver for small motions about an equilibrium with coordinates q."""
+        return (Solver if self.elastica.load is None else LoadedSolver)(self.elastica.at(q).steady())
+
+    def growth_rate(self, q: np.ndarray, speed: float) -> float:
+        """Compute the largest growth rate [1/s] of small motions about an equilibrium q at a speed [rad/s].
+
+        The lower half of the modes is judged; the upper half belongs to the discretization, not to the beam.
+        """
+        found = self._about(q).solve(np.array([speed]), max(1, self.size // 2))
+        return float(np.real(found.eigenvalue).max())
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
         """Compute linear functions of the coordinates in equilibrium: see `Eigensolver.solve_static`."""
