@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
@@ -242,6 +243,19 @@ def test_a_blade_that_coils_is_followed_to_an_angle_alone(monkeypatch: pytest.Mo
     short = bd.critical_point(scene, bd.Ritz(6))
     assert whole.speed == short.speed == np.inf
     assert 0 < short.none_below < whole.none_below
+
+
+def test_a_search_ends_where_a_basis_does_not_resolve_the_boundary_layers() -> None:
+    """At 24 times the first frequency, steps of this basis get ever shorter; the search took minutes."""
+    strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+    scene = bd.Scene(strip, bd.Mount(0.1, np.pi / 2, 0.4), physics=physics)
+    start = time.process_time()
+    found = bd.critical_point(scene, bd.Ritz(22))
+    assert time.process_time() - start < 60
+    assert found.speed == np.inf
+    first = 2 * np.pi * bd.natural_modes(scene, modes=1).frequency[0]
+    assert 20 * first < found.none_below < 30 * first
 
 
 # A load at the tip ----------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ import math
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
+from itertools import islice
 from typing import Literal
 
 import numpy as np
@@ -32,6 +33,9 @@ _SOUGHT = 30.0
 # Number of Newton iterations of an easy step (the next step is then longer) in the search for loss of
 # stability: with boundary layers, each of the last iterations gains only a few digits.
 _PATIENT = 8
+# Largest number of steps in that search, several times what it takes: where a basis does not resolve the
+# boundary layers, steps get shorter without end.
+_MOST_STEPS = 200
 _COILED = 2 * math.pi  # angle of a section [rad] above which no loss of stability is searched
 
 
@@ -103,7 +107,7 @@ def find_loss_of_stability(load: Loading) -> tuple[float, bool]:
         return (float(1 / softening), True) if softening * top > 1 else (top, False)
     before = continuation.start_curve(load, load.at_rest, 0.0, 1.0)
     with suppress(NotConverged):
-        for after in continuation.follow(load, before, easy=_PATIENT):
+        for after in islice(continuation.follow(load, before, easy=_PATIENT), _MOST_STEPS):
             if not after.p_rate:
                 return after.p, True
             if count_negative(load, after.q, after.p):
