@@ -229,7 +229,7 @@ def random_loads(
     duration
         Duration for which the largest values are expected, with its unit.
     quantity
-        What --plot and --report draw along the span; default: strain.
+        What --plot and --report draw along the span; default: strain, or moment where it is not known.
     modes
         Number of modes; auto: the fewest that keep the error below 1e-4 of the largest value along the span.
     """
@@ -237,7 +237,7 @@ def random_loads(
     shown, speed = asked.shown(scene), asked.speed_of(scene)
     given, basis = (asked.density, asked.drive), {"modes": modes, "discretization": discretization}
     result = bd.random_loads(shown, speed, *given, duration, at, points, youngs_modulus, **basis)
-    return Answer(result, draw=partial(result.plot, quantity=quantity or "strain"))
+    return Answer(result, draw=partial(result.plot, quantity=quantity))
 
 
 def _check_together(kinds: list[str], angle: float | None, window: str | None) -> None:

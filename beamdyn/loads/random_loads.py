@@ -179,8 +179,9 @@ class RandomLoads(SpanLoads):
             total += size * self.spectrum.at(np.abs(f - each.shift))
         return total
 
-    def plot(self, ax: Axes | None = None, quantity: str = "strain") -> Axes:
-        """Plot the largest expected magnitude of a quantity along the span."""
+    def plot(self, ax: Axes | None = None, quantity: str | None = None) -> Axes:
+        """Plot the largest expected magnitude of a quantity along the span, by default `judged_quantity`."""
+        quantity = quantity or self.judged_quantity
         label = f"largest {with_unit(quantity)} expected in {self.duration:g} s"
         return self.draw(ax, quantity, self.values, label)
 

@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, SLOW_BASES, refine
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, list_models, split_tip
 from beamdyn.modes.modal.distance_across import distance_across
-from beamdyn.modes.modal.equilibrium import StabilityLoss, find_loss_of_stability
+from beamdyn.modes.modal.equilibrium import StabilityLoss
 from beamdyn.modes.modal.error_estimate import UNRESOLVED, extrapolation_error, is_halved
 from beamdyn.modes.modal.model import Model
 from beamdyn.scene.scene import Scene
@@ -136,7 +136,9 @@ def search_bent(models: Iterator[Model], target: float) -> FoundLoss:
 
     def finer(before: FoundLoss) -> FoundLoss | None:
         model = next(models, None)
-        return None if model is None else compare_bent(model, before)
+        found = before if model is None else compare_bent(model, before)
+        # If two models in turn cannot be followed, no finer one is tried.
+        return None if model is None or found.loss.is_lost is before.loss.is_lost is None else found
 
     def meets(found: FoundLoss) -> bool:
         return found.error <= max(target, _TARGET_OF_BENT)
@@ -150,14 +152,14 @@ def compare_bent(model: Model, before: FoundLoss | None = None) -> FoundLoss:
     The coarser model is that of the result `before`.  Without it, a slightly coarser model is solved; that
     neither loses stability then claims nothing, since both may be too coarse.
     """
-    loss = find_loss_of_stability(model.deflected.load)
+    loss = model.deflected.find_loss_of_stability()
     coarse = model.compared if before is None else before.model
-    of_coarse = find_loss_of_stability(coarse.deflected.load) if before is None else before.loss
+    of_coarse = coarse.deflected.find_loss_of_stability() if before is None else before.loss
     error = np.inf
     if loss.is_lost and of_coarse.is_lost:
         distance = abs(of_coarse.squared - loss.squared)
         error = _ROUNDING_OF_BENT + (distance and _margin(model) * distance / (2 * loss.squared))
-    elif before is not None and loss.is_lost == of_coarse.is_lost:
+    elif before is not None and loss.is_lost is of_coarse.is_lost is False:
         error = 0.0
     return FoundLoss(model, coarse, math.sqrt(loss.squared), error, _ROUNDING_OF_BENT, loss)
 

@@ -195,7 +195,7 @@ def equilibrium(
     tip, of_coarse = solver.elastica.beam.at(q).tip, np.full(3, np.inf)
     with suppress(NoEquilibrium):  # the coarser model buckles later, and may have no such equilibrium yet
         of_coarse = coarse.elastica.beam.at(coarse.equilibria(speeds)[0]).tip
-    growth = float(np.real(solution.eigen.eigenvalue).max())
+    growth = solver.growth_rate(q, float(speeds[0]))
     error = np.abs(tip - of_coarse).max() * (SLOW_BASES.factor if solution.model.lacks_two else 1.0)
     at = Words("at ", Speeds(float(speeds[0])))
     sharp = warn_of_sharp_bending(scene, partial(solver.elastica.curvature, q[None]), lambda _: at)
@@ -300,7 +300,8 @@ class EquilibriumBranches(SceneResult):
     branches : tuple of EquilibriumBranch
         The branch from rest, then another branch that exists at the top speed, if any.
     critical_speed : float
-        Speed at which the straight beam buckles [rad/s]; inf if rotation bends it at every speed.
+        Speed at which the straight beam buckles [rad/s]; inf if rotation bends it at every speed, nan if a
+        load at the tip may make it flutter.
     warnings : tuple of str
         Warnings about the validity and accuracy of the result.
     provenance : Provenance
@@ -369,8 +370,8 @@ def equilibrium_branches(
     model = choose_model(scene, discretization, np.array([0.0, top]), 1)
     solver = model.deflected
     load, rest, warnings = solver.load, solver.load.at_rest, ()
-    if load.bends:
-        branches = [_collect("straight", load, continuation.start_curve(load, rest, 0.0, 1.0), top)]
+    if load.bends or scene.may_flutter_by_load:
+        branches = [_collect("straight", solver, continuation.start_curve(load, rest, 0.0, 1.0), top)]
     else:
         speeds = np.union1d(np.linspace(0, top, 101), min(top, _JUST_BELOW * solver.critical_speed))
         tips = np.tile(_in_space(load.elastica.beam.at(rest).tip, scene.mount), (len(speeds), 1))
@@ -379,27 +380,28 @@ def equilibrium_branches(
         branches = [EquilibriumBranch("straight", speeds, tips, speeds < solver.critical_speed, np.empty(0))]
     try:  # follows another branch, if there is one, from the top speed through its turning points
         start_of_bent = continuation.start_curve(load, find_bent(load, top), top**2, -1.0)
-        branches.append(_collect("bent", load, start_of_bent, top))
+        branches.append(_collect("bent", solver, start_of_bent, top))
     except NoEquilibrium as error:
         warnings = (str(error),)
     return EquilibriumBranches(
         top_speed=top,
         branches=tuple(branches),
-        critical_speed=solver.critical_speed,
+        critical_speed=np.nan if scene.may_flutter_by_load else solver.critical_speed,
         warnings=warnings,
         provenance=Provenance.since(start, str(model.discretization)),
         scene=scene,
     )
 
 
-def _collect(name: str, load: Loading, start: continuation.Point, top: float) -> EquilibriumBranch:
+def _collect(name: str, solver: DeflectedSolver, start: continuation.Point, top: float) -> EquilibriumBranch:
     """Collect the points of a branch until it passes the top speed, or until the beam has turned by 2 pi."""
-    points = [start]
+    points, load = [start], solver.load
     with suppress(continuation.NotConverged):  # the points end where the branch cannot be continued
         for point in continuation.follow(load, start, _FINE):
             if point.p >= top**2 and point.p_rate:
-                at_top = continuation.find_at(load, points[-1], point, top**2)
-                points.append(replace(point, q=at_top, p=top**2))
+                points.append(
+                    replace(point, q=continuation.find_at(load, points[-1], point, top**2), p=top**2)
+                )
                 break
             points.append(point)
             if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:
@@ -407,7 +409,7 @@ def _collect(name: str, load: Loading, start: continuation.Point, top: float) ->
     # At a turning point the stiffness is singular; the point counts as stable if the branch before it is.
     judged = [b if b.p_rate else a for a, b in zip([start, *points], points, strict=False)]
     tips = load.elastica.beam.at(np.array([point.q for point in points])).tip
-    stable = np.array([continuation.count_negative(load, point.q, point.p) == 0 for point in judged])
+    stable = np.array([*map(solver.is_stable, judged)])
     speeds = np.sqrt([max(point.p, 0.0) for point in points])
     turning = np.sqrt([point.p for point in points if not point.p_rate])
     return EquilibriumBranch(name, speeds, _in_space(tips, load.elastica.linear.mount), stable, turning)

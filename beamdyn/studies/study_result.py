@@ -6,6 +6,7 @@ In shapes of arrays, m counts results of a design, and p designs whose model err
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, ClassVar
@@ -286,8 +287,10 @@ class Study(SceneResult, StatesModelError):
             return {}
         place = [each.name for each in self.inputs].index(SPEED) if self.combine == "product" else 0
         along = np.moveaxis(speeds.reshape(*(1,) * (len(self.shape) - 1), -1), -1, place) / (2 * np.pi)
-        lines = lines_of(self.scene, float(speeds.max()))
-        return {line.name: line.multiple * along for kind, line in lines if kind == "forced"}
+        with suppress(ValueError):  # the motion may have no steady state, and so no lines
+            lines = lines_of(self.scene, float(speeds.max()))
+            return {line.name: line.multiple * along for kind, line in lines if kind == "forced"}
+        return {}
 
 
 _REASONS = {

@@ -14,10 +14,10 @@ from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.beam_in_space.rotating_beam import QUANTITIES
 from beamdyn.equations.effects import check_direction
 from beamdyn.equations.root_motion import Quantity
-from beamdyn.modes.modal.continuation import NoEquilibrium
+from beamdyn.modes.modal.continuation import Loading, NoEquilibrium
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, choose_model, ensure_size
 from beamdyn.modes.modal.eigenproblem import Solver
-from beamdyn.modes.modal.equilibrium import find_bent, follow_to, load_by_rotation
+from beamdyn.modes.modal.equilibrium import find_bent, follow_to
 from beamdyn.modes.modal.model import SPEED_SAMPLES, ModalBasis, Model
 from beamdyn.scene.motion.base import Motion
 from beamdyn.scene.physics import Physics
@@ -300,7 +300,7 @@ def _bent_equilibrium(system: BeamInSpaceSystem) -> np.ndarray:
     values: dict[Quantity, float] = {name: float(getattr(root, name)) / speed**2 for name in QUANTITIES}
     elastica = system.elastica
     size = max(1.0, abs(values["root_transverse"]) / elastica.beam.stations.length)
-    load = replace(load_by_rotation(elastica, lowest / size), growing=values)
+    load = Loading(elastica, values, lowest / size, {"unity": 1.0} if elastica.load else {})
     largest = float(np.abs(load.rate(np.zeros(system.size))).max())
     try:
         return find_bent(load, speed, largest) if is_bent else follow_to(load, np.array([speed]))[0]

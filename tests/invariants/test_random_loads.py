@@ -256,3 +256,11 @@ def test_refusals(given, said):
 def test_a_short_duration_is_warned_of():
     found = bd.random_loads(SCENE, SPEED, TABLE, at=[0.0], duration=0.01, modes=2)
     assert any("under 10 vibrations" in said for said in found.warnings)
+
+
+def test_a_picture_is_of_the_moment_where_the_strain_is_not_known():
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1e4)
+    psd = bd.PowerSpectrum([1.0, 50.0], [1.0, 1.0])
+    found = bd.random_loads(bd.Scene(beam, damping_ratio=0.01), 0.0, psd, "bending", at=[0.0, 0.5])
+    assert "moment" in found.plot().get_ylabel()
+    assert "strain" in bd.random_loads(SCENE, SPEED, TABLE, "n2", at=AT[:2], modes=2).plot().get_ylabel()

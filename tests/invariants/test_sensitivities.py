@@ -125,6 +125,19 @@ def test_critical_speed_is_that_of_power_series():
         assert error[0] < 1e-9 * abs(derivative[0])
 
 
+def test_damping_changes_no_sensitivity_of_a_critical_speed():
+    """Rounding errors of modal damping took half of the digits, and most of the time of large models."""
+    beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    scene = bd.Scene(beam, bd.Mount(0.215), physics=bd.Physics(planes=2, shear=True))
+    names = ["beam.thickness", "beam.poissons_ratio", "mount.radius"]
+    damping = bd.Damping((0.01, 0.02), mass_factor=0.1, stiffness_factor=1e-6, tip_damper=1e-3)
+    plain = bd.critical_speed_sensitivities(scene, names)
+    damped = bd.critical_speed_sensitivities(replace(scene, damping=damping), [*names, "damping.ratios[0]"])
+    np.testing.assert_array_equal(damped.derivative[:3], plain.derivative)
+    np.testing.assert_array_equal(damped.error[:3], plain.error)
+    assert abs(damped.derivative[3]) <= damped.error[3] < 1e-6  # rad/s per 1, of 160 rad/s
+
+
 def test_a_hinge_with_gyroscopic_terms_and_damping():
     beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=3.0)
     mount = bd.Mount(0.2, np.pi, 0.3, root_stiffness=0.0, precone=0.1)

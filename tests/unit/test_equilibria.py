@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 import tomllib
 from collections.abc import Callable
 from dataclasses import replace
@@ -265,6 +266,19 @@ def test_a_blade_that_coils_is_followed_to_an_angle_alone(monkeypatch: pytest.Mo
     assert 0 < short.none_below < whole.none_below
 
 
+def test_a_search_ends_where_a_basis_does_not_resolve_the_boundary_layers() -> None:
+    """At 24 times the first frequency, steps of this basis get ever shorter; the search took minutes."""
+    strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)
+    physics = bd.Physics(2, rotary_inertia=True, torsion=True, large_deflection=True)
+    scene = bd.Scene(strip, bd.Mount(0.1, np.pi / 2, 0.4), physics=physics)
+    start = time.process_time()
+    found = bd.critical_point(scene, bd.Ritz(22))
+    assert time.process_time() - start < 60
+    assert found.speed == np.inf
+    first = 2 * np.pi * bd.natural_modes(scene, modes=1).frequency[0]
+    assert 20 * first < found.none_below < 30 * first
+
+
 # A load at the tip ----------------------------------------------------------------------------------
 
 
@@ -344,3 +358,35 @@ def test_what_is_always_modelled_is_not_to_be_left_out(
     with pytest.raises(InvalidValue, match="leave it out, as this analysis always models large") as refused:
         analysis(scene, 50.0)
     assert refused.value.field == lacking
+
+
+def beck(push: float, across: float = 0.0) -> bd.Scene:
+    """Return an outward beam of unit properties under a force that follows its tip."""
+    load = bd.TipLoad((-push, across, 0.0), follows=True)
+    return bd.Scene(
+        bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi), physics=BENT, tip_load=load
+    )
+
+
+@pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties
+@pytest.mark.parametrize(
+    ("push", "across", "stable"),
+    [
+        (20.04, 0.0, True),
+        (20.5, 0.0, False),  # the first two modes flutter, at rest beyond 20.0509
+        (21.0, 0.02, False),
+        (100.0, 0.0, False),  # the first mode vibrates, and higher ones flutter
+        (100.0, 0.02, False),
+    ],
+)
+@pytest.mark.parametrize("speed", [0.0, 0.3])
+def test_all_modes_decide_whether_an_equilibrium_is_stable(
+    push: float, across: float, stable: bool, speed: float
+) -> None:
+    scene = beck(push, across)
+    modes = bd.natural_modes(scene, speed, modes=6)
+    found, branches = bd.equilibrium(scene, speed), bd.equilibrium_branches(scene, 0.4)
+    assert found.stable == stable
+    assert found.growth_rate == pytest.approx(modes.growth_rate.max(), rel=1e-6, abs=0)
+    assert (branches.branches[0].stable == stable).all()
+    assert math.isnan(branches.critical_speed)  # it may flutter first

@@ -160,6 +160,17 @@ def test_a_computed_error_is_kept_in_the_file(made, tmp_path, monkeypatch):
     assert bd.load(tmp_path / "run.json").mode_error == run.mode_error > 0
 
 
+def test_the_error_by_modes_left_out_of_a_periodic_motion_is_in_the_file(tmp_path):
+    """The loaded result, which cannot be solved again, called it inf."""
+    motion = bd.PulsatingRotation(50.0, fluctuation=0.1, frequency=123.9)
+    scene = bd.Scene(HARVESTER.beam, HARVESTER.mount, motion)
+    found = bd.floquet_multipliers(scene, modes=1)
+    found.save(tmp_path / "floquet.json")
+    again = bd.load(tmp_path / "floquet.json")
+    assert again.mode_error == found.mode_error < np.inf
+    assert again.to_table() == found.to_table()
+
+
 def test_a_loaded_transient_is_refined(made, tmp_path):
     run = made("transient")
     run.save(tmp_path / "run.json")

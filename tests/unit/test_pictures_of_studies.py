@@ -167,3 +167,13 @@ def test_answers_on_one_edge_of_a_map_are_drawn_without_lines():
     figure = Figure()
     plot_maps(inputs, [MapAnswer("c", z, np.where(np.isnan(z), "too long", ""))], figure.subplots())
     assert "too long" in texts(figure)
+
+
+def test_frequencies_over_speed_in_a_motion_without_a_steady_state_have_no_lines_of_excitation():
+    """The picture ended in the refusal of a steady state that nobody asked for."""
+    pulsating = replace(SCENE, motion=bd.PulsatingRotation(50.0, fluctuation=0.1, frequency=100.0))
+    _, ax = drawn(bd.study(pulsating, {"speed": SPEEDS[:2]}, modes=1))
+    assert "--" not in [line.get_linestyle() for line in ax.lines]
+    assert "--" in [
+        line.get_linestyle() for line in drawn(bd.study(SCENE, {"speed": SPEEDS[:2]}, modes=1))[1].lines
+    ]

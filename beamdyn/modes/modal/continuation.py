@@ -219,8 +219,8 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
         if len(goals) == 1 and step < _LONGEST:  # one step is enough if the curve hardly turns
             q = solve_at(load, start.q + step * start.q_rate, goals[0], max(_STRAYED * step, _SHORTEST))
             turned = (start_curve(load, q, goals[0], towards).q_rate - start.q_rate) @ load.angles
-            change = count_negative(load, q, goals[0]) - count_negative(load, start.q, start.p)
-            if not change and np.abs(turned).max() < _STRAYED:
+            same = count_negative(load, q, goals[0]) == count_negative(load, start.q, start.p)
+            if same and np.abs(turned).max() < _STRAYED:
                 return q[None]
     with suppress(NotConverged):
         for after in follow(load, start, goal=goals[-1]):

@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh
 
 from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
 from beamdyn.equations.root_motion import Quantity
@@ -32,15 +31,10 @@ _SOUGHT = 30.0
 # Number of Newton iterations of an easy step (the next step is then longer) in the search for loss of
 # stability: with boundary layers, each of the last iterations gains only a few digits.
 _PATIENT = 8
+# Numbers of the steps in that search, several times as many as it takes: where a basis does not resolve the
+# boundary layers, steps get shorter without end.
+_STEPS = range(200)
 _COILED = 2 * math.pi  # angle of a section [rad] above which no loss of stability is searched
-
-
-def load_by_rotation(elastica: RotatingBeam, scale: float) -> Loading:
-    """Build the load by rotation, which grows with the squared speed as its parameter p [rad2/s2].
-
-    `scale` is the change of p that counts like an angle of 1 rad in the arc length: see `Loading`.
-    """
-    return Loading(elastica, elastica.turning, scale, {"unity": 1.0} if elastica.load else {})
 
 
 def follow_to(
@@ -78,8 +72,7 @@ def follow_to(
                 found[pending] = continuation.reach(load, curve, squares[pending].tolist())
             except NotConverged as error:
                 why, squared = error.args
-                said = f"the branch {why} {math.sqrt(max(squared, 0.0)):.6g} rad/s"
-                raise NoEquilibrium(said) from None
+                raise NoEquilibrium(f"the branch {why} {math.sqrt(max(squared, 0.0)):.6g} rad/s") from None
     return found
 
 
@@ -90,38 +83,16 @@ class StabilityLoss(NamedTuple):
     ----------
     squared : float
         Squared speed [rad2/s2] of the loss; if stability is not lost, the largest one reached.
-    is_lost : bool
+    is_lost : bool or None
         Whether stability is lost by a singular stiffness: the branch turns back, or the bent beam buckles.
+        None if the equilibrium could not be followed as far as a loss is sought.
     q : ndarray, shape (n,)
         Coordinates of the last stable equilibrium.
     """
 
     squared: float
-    is_lost: bool
+    is_lost: bool | None
     q: np.ndarray
-
-
-def find_loss_of_stability(load: Loading) -> StabilityLoss:
-    """Find the speed at which the equilibrium continued from rest loses stability."""
-    top = _SOUGHT**2 * load.scale
-    if count_negative(load, load.at_rest, 0.0):
-        return StabilityLoss(0.0, True, load.at_rest)
-    if not load.bends:
-        change = load.elastica.at(load.at_rest).under(load.growing).change
-        # Both matrices are symmetric, as every load here has a potential.
-        softening = max(eigh(-change, load.at(load.at_rest, 0.0).change, eigvals_only=True)[-1], 0.0)
-        is_lost = softening * top > 1
-        return StabilityLoss(float(1 / softening) if is_lost else top, is_lost, load.at_rest)
-    before = continuation.start_curve(load, load.at_rest, 0.0, 1.0)
-    with suppress(NotConverged):
-        for after in continuation.follow(load, before, easy=_PATIENT):
-            if not after.p_rate or count_negative(load, after.q, after.p):
-                lost = continuation.find_loss_between(load, before, after) if after.p_rate else after.p
-                return StabilityLoss(lost, True, before.q)
-            before = after
-            if after.p > top or np.abs(after.q @ load.angles).max() > _COILED:
-                break
-    return StabilityLoss(before.p, False, before.q)
 
 
 def find_bent(load: Loading, speed: float, natural: float = 0.0) -> np.ndarray:
@@ -194,18 +165,17 @@ class DeflectedSolver(Solver):
 
     @cached_property
     def load(self) -> Loading:
-        """Equations of equilibrium under rotation."""
-        return load_by_rotation(self.elastica, self.lowest_at_rest)
+        """Equations of equilibrium under rotation, whose squared speed [rad2/s2] is the parameter."""
+        given: dict[Quantity, float] = {"unity": 1.0} if self.elastica.load else {}
+        return Loading(self.elastica, self.elastica.turning, self.lowest_at_rest, given)
 
     @property
     def critical_speed(self) -> float:
         """Lowest speed at which the straight beam buckles [rad/s]; inf if it bends at every speed."""
-        if self.load.bends:
-            return np.inf
-        if self.elastica.load is None:
-            return super().critical_speed
-        loss = find_loss_of_stability(self.load)
-        return math.sqrt(loss.squared) if loss.is_lost else np.inf
+        if self.load.bends or self.elastica.load is None:
+            return np.inf if self.load.bends else super().critical_speed
+        at_rest = self.load.at_rest
+        return 0.0 if count_negative(self.load, at_rest, 0.0) else self._about(at_rest).critical_speed
 
     eigenvalues = Eigensolver.eigenvalues
 
@@ -219,9 +189,45 @@ class DeflectedSolver(Solver):
         """
         missing = np.array([v for v in np.unique(speeds) if (v, count) not in self._solved])
         for v, q in zip(missing.tolist(), self.equilibria(missing), strict=True):
-            solver = (Solver if self.elastica.load is None else LoadedSolver)(self.elastica.at(q).steady())
-            self._solved[v, count] = solver.solve(np.array([v]), count)
+            self._solved[v, count] = self._about(q).solve(np.array([v]), count)
         return Eigen.joined(self._solved[v, count] for v in speeds.tolist())
+
+    def _about(self, q: np.ndarray) -> Solver:
+        """Build the solver for small motions about an equilibrium with coordinates q."""
+        return (Solver if self.elastica.load is None else LoadedSolver)(self.elastica.at(q).steady())
+
+    def growth_rate(self, q: np.ndarray, speed: float) -> float:
+        """Compute the largest growth rate [1/s] of small motions about an equilibrium q at a speed [rad/s].
+
+        The lower half of the modes is judged; the upper half belongs to the discretization, not to the beam.
+        """
+        return float(np.real(self._about(q).solve(np.array([speed]), -(-self.size // 2)).eigenvalue).max())
+
+    def is_stable(self, point: continuation.Point) -> bool:
+        """Return whether small motions about a point of a curve of equilibria stay small."""
+        if self.elastica.load is None:
+            return count_negative(self.load, point.q, point.p) == 0
+        # A load that follows the tip may cause flutter, which the stiffness does not show.
+        return self.growth_rate(point.q, max(point.p, 0.0) ** 0.5) <= 0
+
+    def find_loss_of_stability(self) -> StabilityLoss:
+        """Find the speed at which the equilibrium continued from rest loses stability."""
+        load, top = self.load, _SOUGHT**2 * self.load.scale
+        if count_negative(load, load.at_rest, 0.0):
+            return StabilityLoss(0.0, True, load.at_rest)
+        if not load.bends:
+            squared = self._about(load.at_rest).critical_speed ** 2
+            return StabilityLoss(min(squared, top), squared < top, load.at_rest)
+        before = continuation.start_curve(load, load.at_rest, 0.0, 1.0)
+        with suppress(NotConverged):
+            for after, _ in zip(continuation.follow(load, before, easy=_PATIENT), _STEPS, strict=False):
+                if not after.p_rate or count_negative(load, after.q, after.p):
+                    lost = continuation.find_loss_between(load, before, after) if after.p_rate else after.p
+                    return StabilityLoss(lost, True, before.q)
+                before = after
+                if after.p > top or np.abs(after.q @ load.angles).max() > _COILED:
+                    return StabilityLoss(before.p, False, before.q)
+        return StabilityLoss(before.p, None, before.q)
 
     def solve_static(self, speeds: np.ndarray, outputs: np.ndarray) -> np.ndarray:
         """Compute linear functions of the coordinates in equilibrium: see `Eigensolver.solve_static`."""
@@ -237,7 +243,13 @@ class DeflectedSolver(Solver):
         """Compute the equilibrium coordinates at each speed, in rows; results are cached."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
         if self.guide is not None and len(missing):
-            self._find_near(self.guide, missing)
+            # An equilibrium close to that of the guide is taken if as many eigenvalues are negative there.
+            for v, of_guide in zip(missing.tolist(), self.guide.equilibria(missing), strict=True):
+                near = self.elastica.nearest(self.guide.elastica, of_guide)
+                with suppress(NotConverged):
+                    q = continuation.solve_at(self.load, near, v**2, _NEAR)
+                    if count_negative(self.load, q, v**2) == count_negative(self.guide.load, of_guide, v**2):
+                        self._found[v] = q
             missing = np.array([v for v in missing if v not in self._found])
         if len(missing):
             if not self._found and self.branch == "straight":
@@ -248,16 +260,3 @@ class DeflectedSolver(Solver):
             followed = follow_to(self.load, missing, self._found[start], start)
             self._found.update(zip(missing.tolist(), followed, strict=True))
         return np.array([self._found[abs(v)] for v in speeds])
-
-    def _find_near(self, guide: DeflectedSolver, speeds: np.ndarray) -> None:
-        """Store the equilibria that are close to those of the discretization of `guide`.
-
-        A speed is left out if there is no such equilibrium, or if its stiffness has a different number of
-        negative eigenvalues than that of `guide`.
-        """
-        for v, of_guide in zip(speeds.tolist(), guide.equilibria(speeds), strict=True):
-            near = self.elastica.nearest(guide.elastica, of_guide)
-            with suppress(NotConverged):
-                q = continuation.solve_at(self.load, near, v**2, _NEAR)
-                if count_negative(self.load, q, v**2) == count_negative(guide.load, of_guide, v**2):
-                    self._found[v] = q

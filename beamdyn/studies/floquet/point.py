@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -115,6 +115,10 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
         if finer is None or self.again is None:
             return math.inf
         return 2 * abs(self.again(self.scene, modes=finer.modes).growth_rate - self.growth_rate)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Convert the result to numbers, lists and strings, including `mode_error`."""
+        return {**super().to_dict(), "mode_error": self.mode_error}
 
     def judged(self, found: FloquetMultipliers) -> np.ndarray:
         """Return the magnitude of the largest multiplier of `found`, shape ().

@@ -167,7 +167,7 @@ def critical_speed_sensitivities(
         raise NoModelAnswer(f"there is no critical speed to change: {found.reason}")
     model = _linear(found.model)
     numbers = sensitivity_result.numbers_of(model.scene, names)
-    changes = changes_of(model, numbers)
+    changes = changes_of(model, numbers, damped=False)
     speeds = model.solver.critical_speed, model.coarse_solver.critical_speed
     each = [(P, at, critical_vector(P, at)) for P, at in zip(steady_pencils(model), speeds, strict=True)]
     derivative, error = _compared(changes, lambda k, dP: critical_derivative(*each[k], dP), found.speed)
