@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, ROUNDING_OF_TWO, SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, explained
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.solvers import eigenvalues_over_speeds, solve_over_speeds, solver_of
 from beamdyn.scene.scene import Scene
@@ -112,6 +112,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
+    with explained():
+        if fine.eigenvalue.shape[1] < modes:  # beside the others, the mass of some modes is within rounding
+            raise np.linalg.LinAlgError
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
     compared = coarse.shape[1]  # the coarser basis may have fewer linearly independent functions
     s = fine.eigenvalue[:, :compared]
