@@ -93,7 +93,7 @@ def rounding_errors(
         parts = np.split(frequencies, range(step, len(frequencies), step))
         return np.concatenate([rounding_errors(model, excitation, observation, part) for part in parts])
     of_loads, full = free.shares(np.eye(len(free.shapes))), model.model.equations.steady()
-    K = np.abs(full.K0) + model.speed**2 * np.abs(full.K2)
+    K = model.full_stiffness
     found = []
     for h, drive in model.drives(excitation).items():
         s = 2j * np.pi * frequencies[:, None] + 1j * h * model.speed
