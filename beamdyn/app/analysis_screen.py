@@ -161,8 +161,7 @@ def _in_groups(analysis: Analysis, given: Mapping[str, Any]) -> dict[str, Any]:
             own = {each: _listed(hints[each], given[each]) for each in hints if each in given}
             values[name] = group(**own)
         elif READ_SECOND in getattr(option.annotation, "__metadata__", ()):
-            lines = tuple(given[name].splitlines())
-            values[name] = DataText(Path(name), lines) if lines else None
+            values[name] = DataText.of(Path(name), given[name]) if given[name] else None
         elif name in given:
             values[name] = _listed(option.annotation, given[name])
     return values

@@ -65,7 +65,7 @@ def solve(tables: Mapping[str, Any]) -> Deck:
 
 
 def _lines(text: str) -> DataText:
-    return DataText(_SOURCE, tuple(text.splitlines()))
+    return DataText.of(_SOURCE, text)
 
 
 def _tables_of_file(text: str, source: str) -> dict[str, Any]:

@@ -186,11 +186,13 @@ def _moment(scene: Scene, discretization: Discretization, equations: Equations, 
 
     loads = full.vectors.items()
     load: dict[Quantity, float] = {quantity: length * float(rotation @ f) for quantity, f in loads}
-    position = rows(0)
+    position, velocity = rows(0), rows(1)
     if math.isfinite(spring):
         slope = kept[full.blocks[name].start] / length  # slope due to bending, without shear
-        position["unity"] = position["unity"] + spring * length * (slope @ share) * slope
-    velocity = rows(1)
+        of_spring = spring * length * (slope @ share) * slope
+        position["unity"] = position["unity"] + of_spring
+        if beta := scene.damping.stiffness_factor:  # it damps the spring, too
+            velocity["unity"] = velocity["unity"] + beta * of_spring
     if (voltage := equations.voltage) is not None and full.circuit is not None:
         by_state = position if voltage.order == 0 else velocity
         of_voltage = length * (rotation @ full.circuit.coupling) * voltage.row

@@ -18,7 +18,7 @@ from beamdyn.linear.convergence import Refined, check_linear, evaluate_accuratel
 from beamdyn.linear.inputs_outputs import Excitation, Observation, as_excitation, as_observation
 from beamdyn.linear.model_at_speed import ModelAtSpeed
 from beamdyn.linear.resonance_peaks import ResonancePeaks, find_peaks
-from beamdyn.linear.transfer import check_stable, transfer
+from beamdyn.linear.transfer import check_stable, rounding_errors, transfer
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
@@ -53,7 +53,7 @@ class FrequencyResponse(SceneResult, JudgedByRepeating):
         The harmonics h: 0, or -1 and 1.
     error : ndarray, shape (F, k)
         Estimated error of the response [same unit]: its distance from that of more modes and of a coarser
-        discretization, each with a margin.
+        discretization, each with a margin, and rounding.
     peaks : beamdyn.linear.resonance_peaks.ResonancePeaks
         Peaks between the lowest and the highest frequency, also between grid points: `frequency`, `size`,
         half-power `bandwidth`, and their errors.
@@ -218,7 +218,7 @@ def frequency_response(
         frequencies=given,
         response=refined.value,
         harmonics=np.array([*refined.model.drives(drive)]),
-        error=refined.error,
+        error=refined.error + rounding_errors(refined.model, drive, seen, given),
         peaks=find_peaks(refined.model, refined.larger, drive, seen, band, tolerance * (modes == "auto")),
         input=f"{drive.label} [{drive.unit}]",
         output=f"{seen.label} [{seen.unit}]" if seen.unit else seen.label,

@@ -39,6 +39,7 @@ from beamdyn.linear.inputs_outputs import (
     OfLayers,
     StrainAtRoot,
 )
+from beamdyn.modes.modal.error_estimate import rounding_of_entries
 from beamdyn.modes.modal.model import ModalBasis, Model, reduce_to_modes
 from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.mount import exact_cos_sin
@@ -200,11 +201,12 @@ class ModelAtSpeed(FieldsOnly):
         """Compute the static deflection under a load with all functions, minus that with retained ones."""
         if self.modes is None:
             return np.zeros_like(load)
-        of_all = np.linalg.solve(self._full_stiffness, load)
+        of_all = np.linalg.solve(self.full_stiffness, load)
         return of_all - self.shapes @ np.linalg.solve(self.K, self.shapes.T @ load)
 
     @cached_property
-    def _full_stiffness(self) -> np.ndarray:
+    def full_stiffness(self) -> np.ndarray:
+        """Stiffness matrix of all trial functions at this speed."""
         pencil = self.model.equations.steady()
         return pencil.K0 + self.speed**2 * pencil.K2
 
@@ -357,12 +359,26 @@ def pole_errors(model: ModelAtSpeed) -> np.ndarray:
         error = (truncation + error_of_finest(THREE_DISCRETIZATIONS, apart, before)) / np.abs(poles)
         resolved = (truncation + LINEAR_MESHES.factor * apart) / np.abs(poles) < _UNRESOLVED
     error += rounding + _ROUNDING + LINEAR_MESHES.factor * model.discretization.rounding
+    error += _rounding_of_stiffness(model)
     resolved &= (error < _UNRESOLVED) & fine.exceeds_coarser
     # Poles ascend: those above the first unresolved one may be paired with poles of other modes.
     ended = np.maximum.accumulate(~resolved & np.maximum.accumulate(resolved))
     found = np.full(len(kept.poles), np.nan)
     found[: len(poles)] = np.where(resolved & ~ended, error, np.inf)
     return found
+
+
+def _rounding_of_stiffness(model: ModelAtSpeed) -> np.ndarray:
+    """Estimate the relative errors of the finite poles by rounding of the stiffness matrix's entries.
+
+    They are large where elements are short.
+    """
+    free = model.free_motion
+    shapes = (model.shapes @ free.shapes[:, free.inverse_poles != 0]).T
+    energies = np.einsum("ki,ij,kj->k", shapes.conj(), model.model.equations.steady().M, shapes).real
+    with np.errstate(divide="ignore", invalid="ignore"):
+        squared = np.abs(free.finite_poles) ** 2 * energies
+        return rounding_of_entries(model.full_stiffness, shapes, shapes) / (2 * squared)
 
 
 def _distance(poles: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -19,6 +19,7 @@ import numpy as np
 from beamdyn.common.inputs.checks import BeyondModel
 from beamdyn.linear.inputs_outputs import Excitation, Observation, StrainAtRoot
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
+from beamdyn.modes.modal.error_estimate import rounding_of_entries
 
 _TERMS_AT_ONCE = 1_000_000  # number of terms of the sum that are kept in memory at once
 
@@ -76,6 +77,35 @@ def modal_sums(
         h: ModalSum(free.inverse_poles, seen * share[:, None], model.residual(observation, drive), delay)
         for (h, drive), share in zip(drives.items(), shares.T, strict=True)
     }
+
+
+def rounding_errors(
+    model: ModelAtSpeed, excitation: Excitation, observation: Observation, frequencies: np.ndarray
+) -> np.ndarray:
+    """Estimate the rounding errors of a transfer function, which resonance magnifies: shape (F, k).
+
+    Relative errors of the entries of mass and stiffness matrix change the response by the work of their
+    forces on the response to a load that is 1 where the output is observed.  For the parameters see
+    `transfer`.
+    """
+    free, row, shapes = model.free_motion, model.row(observation), model.shapes
+    if len(frequencies) > (step := max(1, _TERMS_AT_ONCE // len(shapes))):
+        parts = np.split(frequencies, range(step, len(frequencies), step))
+        return np.concatenate([rounding_errors(model, excitation, observation, part) for part in parts])
+    of_loads, full = free.shares(np.eye(len(free.shapes))), model.model.equations.steady()
+    K = model.full_stiffness
+    found = []
+    for h, drive in model.drives(excitation).items():
+        s = 2j * np.pi * frequencies[:, None] + 1j * h * model.speed
+        terms = 1 / (1 - s * free.inverse_poles)
+        q = terms * (of_loads @ drive.load) @ free.shapes.T @ shapes.T
+        seen = (r @ free.shapes for r in (row.position, row.velocity, row.acceleration))
+        weights = sum(s**power * each for power, each in enumerate(seen))
+        answer = terms * weights @ of_loads @ shapes.T
+        found.append(
+            rounding_of_entries(K, answer, q) + np.abs(s[:, 0]) ** 2 * rounding_of_entries(full.M, answer, q)
+        )
+    return np.column_stack(found)
 
 
 # Solution by the equations, and stability ----------------------------------------------------------

@@ -16,7 +16,7 @@ mass.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -83,6 +83,12 @@ class LoadRows:
             for quantity, row in rows.items():
                 total += getattr(root, quantity)[:, None, None] * np.moveaxis(row @ state.T, -1, 0)
         return total
+
+    def per_coordinate(self, root: RootMotion) -> Iterator[np.ndarray]:
+        """Yield loads per unit coordinate, (S, K, coordinates), at each time of the root motion."""
+        for k in range(len(root.unity)):
+            parts = (float(getattr(root, name)[k]) * row for name, row in self.position.items())
+            yield sum(parts, np.zeros(()))
 
     def each(self, change: Callable[[np.ndarray], np.ndarray]) -> LoadRows:
         """Apply a function to all arrays of the rows, and return the resulting rows."""

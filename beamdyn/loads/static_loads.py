@@ -26,6 +26,7 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.distance_across import distance_across
 from beamdyn.modes.modal.equilibrium import NoEquilibrium
+from beamdyn.modes.modal.error_estimate import rounding_of_entries
 from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.model_error.left_out_changes import SolvedValues
@@ -152,8 +153,10 @@ def static_loads(
     asked = span_loads.AskedLoads.of(scene, at, points, youngs_modulus)
 
     def solved(model: Model) -> _Solved:
-        (found, tip), (coarse, _) = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
-        rounding = _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
+        (found, tip, rounding), (coarse, *_) = (
+            _solve(each, asked, speeds, theta) for each in (model, model.coarser)
+        )
+        rounding = rounding + _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
         across = distance_across(model, lambda fewer: _solve(fewer, asked, speeds, theta)[0], found)
         distance = np.abs(found - coarse) + across  # at some stations either may be small by chance
         distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
@@ -206,13 +209,15 @@ def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -
 
 def _solve(
     model: Model, asked: span_loads.AskedLoads, speeds: np.ndarray, theta: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Compute K outputs at S stations in equilibrium at C speeds, (C, S, K), and the tip deflections.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Compute K outputs at S stations in equilibrium at C speeds, tip deflections, and rounding errors.
 
-    The angle of rotation is theta [rad].
+    The angle of rotation is theta [rad].  Outputs and rounding errors, those by the entries of the stiffness
+    matrix, have the shape (C, S, K).
     """
     equations = model.equations
     rows = span_rows(model.scene, model.discretization, equations, asked.stations)
+    rows = rows.through(asked.outputs.matrix)
     root = equations.root(replace(MotionSample.steady(speeds), angle=np.full(len(speeds), theta)))
     K = equations.matrix(0, root)
     size = np.sqrt(np.einsum("cii->ci", np.abs(K)))
@@ -225,4 +230,9 @@ def _solve(
             "own weight buckles it at this or a lower speed, or it turns freely about its root"
         )
     q = np.linalg.solve(scaled, (equations.load(root) / size)[..., None])[..., 0] / size
-    return rows.through(asked.outputs.matrix).at(root, q, np.zeros_like(q)), q @ equations.tips.T
+    outputs, rounding = rows.at(root, q, np.zeros_like(q)), []
+    for k, by_coordinate in enumerate(rows.per_coordinate(root)):
+        load = (by_coordinate / size[k]).reshape(-1, equations.size).T
+        answer = (np.linalg.solve(scaled[k], load).T / size[k]).reshape(by_coordinate.shape)
+        rounding.append(rounding_of_entries(K[k], answer, q[k]))
+    return outputs, q @ equations.tips.T, np.array(rounding)

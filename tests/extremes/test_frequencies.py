@@ -193,6 +193,19 @@ def test_an_immense_tip_inertia_ends_with_an_answer_or_a_reason(speed: float, di
     assert time.perf_counter() - started < 20
 
 
+@pytest.mark.parametrize("ratio", [1e9, 1e12, 1e24])
+@pytest.mark.parametrize("speed", [0.0, 3.162277660168379e-08, 1.0])
+def test_an_immense_tip_mass_ends_with_an_answer_or_a_reason(speed: float, ratio: float) -> None:
+    """With precone the planes are coupled by velocities; the tip body alone has mass within rounding."""
+    beam = bd.Beam.from_stiffness(1.0, 1.0, 1.0, second_bending_stiffness=3.0, tip=bd.TipMass(ratio))
+    mount = bd.Mount(0.1, math.pi, math.pi / 2, precone=0.05)
+    try:
+        found = bd.natural_modes(bd.Scene(beam, mount, physics=bd.Physics(planes=2)), speed, 3)
+        assert found.frequency.size == found.error.size == 3
+    except ValueError as error:
+        assert "more digits than double precision has" in str(error)
+
+
 def test_more_segments_than_can_be_solved_are_refused_at_once() -> None:
     stations = np.linspace(0, 1, 302)
     beam = bd.Beam.rectangular(

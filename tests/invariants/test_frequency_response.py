@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mpmath import mp
 from scipy.signal import freqresp, lsim
 
 import beamdyn as bd
@@ -159,3 +160,30 @@ def test_uniform_cantilever_against_its_characteristic_functions():
     found = bd.frequency_response(bd.Scene(beam), 0.0, f, "tip force")
     np.testing.assert_allclose(found.response[:, 0], exact, rtol=1e-7)
     assert (np.abs(found.response[:, 0] - exact) <= found.error[:, 0]).all()
+
+
+@pytest.mark.parametrize("discretization", ["ritz", bd.Ritz(16), bd.Fem(100), bd.Fem(160), bd.Fem(200)])
+@pytest.mark.parametrize("mode", range(4))
+def test_stated_errors_cover_rounding_that_resonance_magnifies(mode, discretization):
+    """The beam of the last test, damped by its mass: beta^4 = omega^2 - 2e-4 i omega."""
+    with mp.workdps(30):
+        start = (mode + 0.5) * mp.pi + (0.3 if mode == 0 else 0)
+        resonant = mp.findroot(lambda b: mp.cos(b) + 1 / mp.cosh(b), start)
+        f = float(resonant**2 / (2 * mp.pi))
+        beta = mp.root((2 * mp.pi * f) ** 2 - 2e-4j * 2 * mp.pi * f, 4)
+        c, s, ch, sh = mp.cos(beta), mp.sin(beta), mp.cosh(beta), mp.sinh(beta)
+        exact = complex((s * ch - c * sh) / (beta**3 * (1 + c * ch)))
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), damping=bd.Damping(mass_factor=2e-4))
+    found = bd.frequency_response(scene, 0.0, [f], "tip force", discretization=discretization)
+    assert abs(found.response[0, 0] - exact) <= found.error[0, 0]
+
+
+def test_the_moment_at_a_root_that_material_damping_holds():
+    """A nearly rigid beam turns about its spring, which takes part in C = alpha M + beta K."""
+    spring, beta = 1e-8, 0.3
+    mount = bd.Mount(root_stiffness=spring)
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), mount, damping=bd.Damping(stiffness_factor=beta))
+    f = np.sqrt(3 * spring) / (2 * np.pi) * np.array([0.1, 0.9, 1.0, 2.0])
+    turn, moment = (bd.frequency_response(scene, 0.0, f, output=seen) for seen in ("tip", "root moment"))
+    exact = spring * (1 + 2j * np.pi * f * beta) * turn.response[:, 0]
+    np.testing.assert_allclose(moment.response[:, 0], exact, rtol=3e-8)

@@ -278,3 +278,23 @@ def nodal_functions(functions, nodes, xi):
     here = int(np.abs(nodes[1:] - xi).argmin())
     for k in (here, here + len(nodes) - 1):
         yield np.linalg.solve(sampled.T, np.eye(2 * len(nodes) - 2)[k])
+
+
+def test_errors_of_equilibria_contain_the_rounding_of_many_elements() -> None:
+    """Two meshes may lose the same digits, so that their distance is no error; Ritz functions lose none."""
+    beam = bd.Beam.from_stiffness(
+        1.0,
+        1.0,
+        1.0,
+        second_bending_stiffness=9.0,
+        twist=bd.Polynomial([0.0, 0.5]),
+        tip=bd.TipMass(4.0, 0.2, 0.02),
+    )
+    scene = bd.Scene(beam, bd.Mount(1.7, 0.0, 0.9), gravity=0.01, physics=bd.Physics(planes=2))
+    right = bd.static_loads(scene, 0.15, [0.0, 0.2, 0.5, 0.8])
+    for elements in range(104, 124, 4):
+        found = bd.static_loads(scene, 0.15, right.x, discretization=bd.Fem(elements))
+        for name in ("moment", "force"):
+            distance = np.abs(getattr(found, name) - getattr(right, name))
+            stated = getattr(found, f"{name}_error") + getattr(right, f"{name}_error")
+            assert (distance <= stated).all(), (elements, name)

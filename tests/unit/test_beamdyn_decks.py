@@ -99,7 +99,17 @@ def polar(factor=1.0):
     return M
 
 
+def weightless(factor=1.0):
+    return written.mass(factor) * (factor > 0.2)
+
+
 REFUSED = [
+    ({"blade_dat": written.blade_file(of_mass=weightless)}, r"line 41: the mass .* eta = 1: .*definite"),
+    (
+        {"primary_dat": written.primary_file(kp_total=10**12)},
+        r"line 13: expected .*coordinates of a key point",
+    ),
+    ({"primary_dat": written.primary_file(members=("1 3.5",))}, r"line 6: expected at least 3 .* found 3.5"),
     (
         {"blade_dat": written.blade_file(soft)},
         r"line 41: the stiffness of the section at eta = 1: .*definite",

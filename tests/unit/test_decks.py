@@ -415,6 +415,14 @@ def test_comments_tabs_and_other_encodings_are_read(folder):
     assert deck.title == "A bläde ° of the tests"
 
 
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_an_ellipsis_of_windows_ends_no_line(folder, end):
+    """Its byte 0x85 is a line's end in Latin-1, and what follows it would be a row of its own."""
+    text = written.elastodyn_blade(rows=[f"{row} ! as measured\x85 5 6 7" for row in ROWS])
+    (folder / "blade.dat").write_bytes(text.replace("\n", end).encode("latin-1"))
+    check_blade(bd.read_deck(folder / "blade.dat", **GIVEN).scene.beam, **ADJUSTED)
+
+
 @pytest.mark.parametrize(
     ("changes", "said"),
     [

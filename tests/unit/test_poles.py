@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import scipy.linalg
+from scipy.optimize import brentq
 
 import beamdyn as bd
 
@@ -59,3 +60,15 @@ def test_errors_of_poles_cover_those_of_many_more_functions(kept, damper):
     true = np.abs(found.poles[:, None] - fine).min(axis=1) / np.abs(found.poles)
     assert (true <= found.error).all() and found.error[0] < (1e-9 if kept is None or not damper else 0.01)
     np.testing.assert_array_equal(vars(bd.state_space(scene, 50.0, modes=kept))["error"], found.error)
+
+
+@pytest.mark.parametrize("ends", [(0.5, 0.501), (0.387, 0.3895, 0.782)])
+@pytest.mark.parametrize("elements", [100, 200])
+def test_errors_of_poles_contain_the_rounding_of_short_elements(ends, elements):
+    """Against roots of cos b cosh b = -1; a uniform beam is meshed as one with stations at `ends`."""
+    roots = [brentq(lambda b: np.cos(b) + 1 / np.cosh(b), *at) for at in ((1, 2), (4, 5), (7, 8), (10, 11))]
+    exact = np.square(roots) * (-0.01 + 1j * np.sqrt(1 - 1e-4))
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0, breakpoints=ends), damping_ratio=0.01)
+    found = bd.matrices(scene, 0.0, discretization=bd.Fem(elements, on_each=4))
+    true = np.abs(found.poles[:, None] - exact) / np.abs(exact)
+    assert (true.min(axis=0) <= found.error[true.argmin(axis=0)]).all()

@@ -13,6 +13,7 @@ import re
 import unicodedata
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from io import StringIO
 from os import PathLike
 from pathlib import Path
 from typing import NamedTuple
@@ -45,6 +46,14 @@ class DataText:
 
     path: Path
     lines: tuple[str, ...]
+
+    @classmethod
+    def of(cls, path: Path, text: str) -> DataText:
+        """Split a text into lines at line feeds and carriage returns alone, as other programs do.
+
+        `str.splitlines` also splits at characters such as U+0085, an ellipsis of Windows read as Latin-1.
+        """
+        return cls(path, tuple(line.rstrip("\n") for line in StringIO(text, newline=None)))
 
     def refusal(self, line: int, sentence: str) -> ConfigError:
         """Return an error about a line: file, line number and sentence."""
@@ -100,7 +109,7 @@ def read_data(path: str | PathLike[str]) -> DataText:
         raise ConfigError(str(file), ["it is no text; give an input file or a table saved as text"])
     if not text.strip():
         raise ConfigError(str(file), ["the file is empty; give an input file or a table"])
-    return DataText(file, tuple(text.splitlines()))
+    return DataText.of(file, text)
 
 
 def named_file(path: str | PathLike[str], key: str, name: str) -> Path:

@@ -9,7 +9,7 @@ Mz) are (-F2, -F3, F1, -M2, -M3, M1).
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -81,7 +81,7 @@ def read_main_file(text: DataText, hub_radius: float) -> Blade:
 # Key points ---------------------------------------------------------------------------------------
 
 
-def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.ndarray, list[int]]:
+def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.ndarray, Sequence[int]]:
     """Read coordinates [m] and twist [deg] of k key points, shape (k, 4), and their line numbers."""
     count = named_count(text, found["kptotal"], least=3)
     heads = ("kpxr", "kpyr", "kpzr", "initialtwist")
@@ -89,7 +89,7 @@ def _read_key_points(text: DataText, found: dict[str, NamedValue]) -> tuple[np.n
     if not at:
         raise text.lacking("expected the headings kp_xr kp_yr kp_zr initial_twist above the key points")
     first = at[0] + 2
-    lines = [*range(first, first + count)]
+    lines = range(first, first + count)
     return np.array([_numbers(text, line, 4, "the coordinates of a key point") for line in lines]), lines
 
 
@@ -98,12 +98,12 @@ def _read_members(text: DataText, found: dict[str, NamedValue], points: int) -> 
     count, line = named_count(text, found["membertotal"], least=1), found["kptotal"].line
     members, start = [], 0
     for k in range(1, count + 1):
-        number = int(_numbers(text, line + k, 2, "the number of a member and of its key points")[1])
-        if number < 3 or start + number > points:
+        number = _numbers(text, line + k, 2, "the number of a member and of its key points")[1]
+        if number not in range(3, points - start + 1):
             said = f"expected at least 3 key points in this member, and at most the {points - start} left"
-            raise text.refusal(line + k, f"{said}, found {number}")
-        members.append(slice(start, start + number))
-        start += number - 1
+            raise text.refusal(line + k, f"{said}, found {number:g}")
+        members.append(slice(start, start + int(number)))
+        start += int(number) - 1
     if start + 1 != points:
         said = f"the members have {start + 1} key points, but kp_total in line {line} is {points}"
         raise text.refusal(line + count, f"{said}; neighbouring members share one")
@@ -246,20 +246,21 @@ def _check_matrices(
 
     Also raise an error for a mass matrix that no rigid section has.
     """
-    ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
-    checks = [
-        (asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"),
-        (least_eigenvalues(ours) <= LEAST, "a positive definite matrix"),
-    ]
-    if name == "mass":
-        wanted = "mass m on the diagonal, m times the centre's offset off it, inertia about z = Ixx + Iyy"
-        is_bad = (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS)
-        checks += [(is_bad, wanted)]
-    for bad, wanted in checks:
+    for bad, wanted in _faults(name, matrices):
         if bad.any():
             k = int(bad.argmax())
             said = f"the {name} of the section at eta = {stations[k]:g}"
             raise text.refusal(lines[k], f"{said}: expected {wanted}")
+
+
+def _faults(name: str, matrices: np.ndarray) -> Iterator[tuple[np.ndarray, str]]:
+    """Yield for each check which matrices fail it, and what is wanted; each needs those before it to pass."""
+    yield asymmetry(matrices) > MOST_ASYMMETRY, "a symmetric matrix"
+    ours = np.moveaxis(_to_ours((matrices + matrices.swapaxes(1, 2)) / 2), 0, 2)
+    yield least_eigenvalues(ours) <= LEAST, "a positive definite matrix"
+    if name == "mass":
+        wanted = "mass m on the diagonal, m times the centre's offset off it, inertia about z = Ixx + Iyy"
+        yield (strangeness(ours) > MOST_STRANGENESS) | (polar_excess(ours) > MOST_EXCESS), wanted
 
 
 def _damping(text: DataText, kind: NamedValue) -> tuple[IgnoredProperty, ...]:

@@ -13,7 +13,7 @@ import numpy as np
 from beamdyn.accuracy.refinement import BASES_OF_FIELDS, BASES_OF_PLATES, ROUNDING_OF_TWO, SLOW_BASES
 from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.equations.discretization import Discretization
-from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver
+from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, explained
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.solvers import eigenvalues_over_speeds, solve_over_speeds, solver_of
 from beamdyn.scene.scene import Scene
@@ -27,7 +27,7 @@ LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 # as refined everywhere, so that their difference shows the order of convergence (1/2 if all elements are
 # halved).
 _HALVED = 0.7
-_OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding error of stiffness entries
+_OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding error of entries
 # Ratio of the difference between the two coarser meshes to the smallest stated error, as the difference
 # between the two finer ones may be small by chance.
 _LEAST_OF_BEFORE = 64.0
@@ -112,6 +112,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
+    with explained():
+        if fine.eigenvalue.shape[1] < modes:  # beside the others, the mass of some modes is within rounding
+            raise np.linalg.LinAlgError
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
     compared = coarse.shape[1]  # the coarser basis may have fewer linearly independent functions
     s = fine.eigenvalue[:, :compared]
@@ -155,9 +158,8 @@ def _mesh_error(
     """Estimate relative truncation errors of extrapolated squared eigenvalues, by comparison of meshes."""
     compared = squared.shape[1]
     noise = (fine.rounding[:, :compared] + model.discretization.rounding) * np.abs(squared)
-    K, v = np.abs(model.solver.pencil.K0) ** 2, np.abs(fine.vector[:, :, :compared]) ** 2
-    # Short elements have large stiffness entries, whose rounding errors are random.
-    noise += _OF_ENTRIES * np.sqrt(np.einsum("sik,ij,sjk->sk", v, K, v, optimize=True))
+    shapes = fine.vector[:, :, :compared].swapaxes(1, 2)
+    noise += rounding_of_entries(model.solver.pencil.K0, shapes, shapes)  # short elements have large entries
     least = LEAST_RATIO if len(model.scene.modelled_beam.breakpoints) == 2 else _UNKNOWN
     left = extrapolation_error(distance, before, noise, least)
     truncation = (left + noise) / (2 * np.abs(squared))
@@ -168,6 +170,15 @@ def _mesh_error(
     known = (size > 0) & np.isfinite(truncation)
     of_lower = np.where(known, truncation * np.minimum(size, 1.0), 0.0)
     return np.maximum(truncation, np.maximum.accumulate(of_lower, axis=1))
+
+
+def rounding_of_entries(matrix: np.ndarray, left: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Estimate the rounding error of left^T matrix right, from independent ones of the matrix's entries.
+
+    `left` and `right` have the shape (..., n) for a matrix (n, n).
+    """
+    squares = (np.abs(each) ** 2 for each in (left, matrix, right))
+    return _OF_ENTRIES * np.sqrt(np.einsum("...i,ij,...j->...", *squares, optimize=True))
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:

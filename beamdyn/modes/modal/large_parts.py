@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, eigsh
+from scipy.sparse.linalg import ArpackError, LinearOperator, eigs, eigsh
 
 from beamdyn.common.numerics import solve_lower, solve_lower_transposed
 from beamdyn.modes.modal.diagonal_stiffness import LEAST_STIFFNESS
@@ -48,7 +48,7 @@ class LargeSolver(Eigensolver):
     @cached_property
     def lowest_at_rest(self) -> float:
         """Lowest squared angular frequency at rest plus the stiffness shift `pencil.shift` [rad2/s2]."""
-        with suppress(ArpackNoConvergence):
+        with suppress(ArpackError):
             return float(1 / self._largest(self._at_rest, 1)[0][0])
         return self.dense.lowest_at_rest
 
@@ -76,7 +76,7 @@ class LargeSolver(Eigensolver):
 
     def _solve_at(self, speed: float, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Compute eigenvalues, vectors (in columns) and rounding errors at one speed."""
-        with suppress(ArpackNoConvergence):
+        with suppress(ArpackError):
             found = None if self.pencil.shift else self._lowest(speed, count)
             if found is not None:
                 return found if self.pencil.conservative else self._lowest_coupled(speed, count)
