@@ -334,7 +334,7 @@ def _powers(
 
 
 def _refinements(request: ResponseRequest) -> Iterator[ResponseRequest]:
-    """Yield up to three requests, each with more modes than the one before: see `ModalBasis.refined`.
+    """Yield up to three requests, each with 1.5 times as many modes as the one before.
 
     There are fewer if the discretization has no model with so many modes.
     """

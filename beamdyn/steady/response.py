@@ -159,7 +159,7 @@ class SteadyResponse(StatesModelError):
 
     @cached_property
     def refined(self) -> SteadyResponse | None:
-        """Response with more modes: see `ModalBasis.refined`; None if there is no larger model."""
+        """Response with 1.5 times as many modes, at least two more; None if there is no larger model."""
         finer = self.request.refined()
         return None if finer is None else finer.run()
 
@@ -366,8 +366,8 @@ class ResponseRequest(FieldsOnly):
         return SolvedValues(response.amplitude, lost[0] if lost else "", note)
 
     def refined(self) -> ResponseRequest | None:
-        """Return the request with more modes: see `ModalBasis.refined`; None if there is no larger model."""
-        basis = self.basis.refined(self.scene.physics.planes)
+        """Return the request with 1.5 times as many modes; None if there is no larger model."""
+        basis = self.basis.refined()
         if basis is None or basis.modes is None:
             return None
         discretization = ensure_size(self.scene, self.discretization, basis.modes)

@@ -181,7 +181,7 @@ class TransientProblem(FieldsOnly):
         if self.basis.modes is None:
             finer = self.model.discretization.finer()
             return None if finer is None else replace(base, discretization=finer)
-        basis = self.basis.refined(self.scene.physics.planes)
+        basis = self.basis.refined()
         return basis and base._with_basis(basis)
 
     def with_one_more(self) -> Self | None:

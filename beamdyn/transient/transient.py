@@ -123,7 +123,7 @@ class Transient(StatesModelError):
 
     @cached_property
     def refined(self) -> Transient | None:
-        """Run with more modes: see `ModalBasis.refined`; None if there is no larger model."""
+        """Run with 1.5 times as many modes, at least two more; None if there is no larger model."""
         return self.request.run_refined()
 
     @cached_property

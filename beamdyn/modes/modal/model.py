@@ -307,13 +307,10 @@ class ModalBasis:
         """Whether all modes of the basis are modes at rest."""
         return self.speeds == (0.0,)
 
-    def refined(self, planes: int = 1) -> ModalBasis | None:
-        """Return a basis with 1.5 times as many modes, at least two more for each plane of bending.
-
-        Fewer may all belong to one plane, and leave out what the other changes.  None if these are too many.
-        """
+    def refined(self) -> ModalBasis | None:
+        """Return a basis with 1.5 times as many modes, at least two more; None if these are too many."""
         assert self.modes is not None
-        modes = self.modes + max(2 * planes, self.modes // 2)
+        modes = self.modes + max(2, self.modes // 2)
         return replace(self, modes=modes) if modes <= _MOST_MODES else None
 
     def with_one_more(self) -> ModalBasis | None:
