@@ -121,6 +121,15 @@ def test_a_speed_that_differs_by_rounding_is_reached(
     assert np.abs(np.diff(beside, axis=0) @ solver.load.angles).max() < 1e-8  # rounding of a stiff blade
 
 
+@pytest.mark.parametrize("digits", [(1, 2), (-2, -5), (0, 1, 2, 3), (-1e3, 1, 3)])
+def test_several_speeds_that_differ_by_rounding_are_reached_together(digits: tuple[float, ...]) -> None:
+    """As when several lines meet a frequency at one speed."""
+    solver = Model(bd.load_scene(EXAMPLES / "iea_15_blade.toml"), bd.Ritz(14, "moments")).deflected
+    known = solver.equilibria(np.array([0.9]))
+    beside = solver.equilibria(0.9 * (1 + np.array(digits) * EPS))
+    assert np.abs((beside - known) @ solver.load.angles).max() < 1e-8
+
+
 def test_no_step_leads_past_where_a_nearly_straight_beam_begins_to_bend() -> None:
     found = bd.equilibrium(harvester(1e-6), 162.0)  # a straight beam buckles at 159.8 rad/s
     assert found.stable
