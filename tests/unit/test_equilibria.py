@@ -379,6 +379,21 @@ def beck(push: float, across: float = 0.0) -> bd.Scene:
 
 @pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties
 @pytest.mark.parametrize(
+    ("basis", "ratio", "error"),
+    [(bd.Ritz(3), 1.0003, math.inf), (bd.Fem(10), 1.00001, math.inf), (bd.Ritz(12), 1.0003, 1e-10)],
+)
+def test_a_load_that_buckles_the_finer_of_two_models_at_rest(
+    basis: bd.Ritz | bd.Fem, ratio: float, error: float
+) -> None:
+    """The coarser one is stiffer, and loses stability at a speed; Euler's load is pi^2/4."""
+    load = bd.TipLoad((-ratio * math.pi**2 / 4, 0.0, 0.0))
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.5), physics=BENT, tip_load=load)
+    found = bd.critical_point(scene, basis)
+    assert (found.speed, found.error) == (0.0, error)
+
+
+@pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties
+@pytest.mark.parametrize(
     ("push", "across", "stable"),
     [
         (20.04, 0.0, True),
