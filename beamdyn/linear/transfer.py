@@ -21,6 +21,7 @@ from beamdyn.linear.inputs_outputs import Excitation, Observation, StrainAtRoot
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
 from beamdyn.modes.modal.error_estimate import rounding_of_entries
 
+_EPS = np.finfo(float).eps
 _TERMS_AT_ONCE = 1_000_000  # number of terms of the sum that are kept in memory at once
 
 
@@ -97,7 +98,8 @@ def rounding_errors(
     found = []
     for h, drive in model.drives(excitation).items():
         s = 2j * np.pi * frequencies[:, None] + 1j * h * model.speed
-        terms = 1 / (1 - s * free.inverse_poles)
+        distance = 1 - s * free.inverse_poles
+        terms = 1 / np.where(distance == 0, _EPS, distance)  # at a pole within rounding, without damping
         q = terms * (of_loads @ drive.load) @ free.shapes.T @ shapes.T
         seen = (r @ free.shapes for r in (row.position, row.velocity, row.acceleration))
         weights = sum(s**power * each for power, each in enumerate(seen))

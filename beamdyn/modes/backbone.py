@@ -25,6 +25,7 @@ from beamdyn.equations.beam_in_space.rotating_beam import BentState
 from beamdyn.equations.root_motion import root_motion
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, solve_to_tolerance
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.modes import provenance_of
 from beamdyn.modes.repeated import left_out_of_frequencies
@@ -139,7 +140,7 @@ def backbone(
     refuse_tip_load(scene)
     speeds, mode = np.array([real("speed", speed, "rad/s")]), count("mode", mode)
     check_speeds(speeds, "speed")
-    scene = scene.undamped.with_large_deflection()
+    scene = plain_physics(scene.undamped).with_large_deflection()
     solution = solve_to_tolerance(scene, discretization, speeds, mode, tolerance)
     s = solution.eigen.eigenvalue[0, mode - 1]
     if not (s.imag > 0 and s.real <= 0):

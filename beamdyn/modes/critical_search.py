@@ -156,8 +156,9 @@ def compare_bent(model: Model, before: FoundLoss | None = None) -> FoundLoss:
     coarse = model.compared if before is None else before.model
     of_coarse = coarse.deflected.find_loss_of_stability() if before is None else before.loss
     error = np.inf
-    if loss.is_lost and of_coarse.is_lost:
-        distance = abs(of_coarse.squared - loss.squared)
+    distance = abs(of_coarse.squared - loss.squared)
+    # If the load at the tip buckles one model at rest, the relative error of speed 0 is not known.
+    if loss.is_lost and of_coarse.is_lost and (loss.squared or not distance):
         error = _ROUNDING_OF_BENT + (distance and _margin(model) * distance / (2 * loss.squared))
     elif before is not None and loss.is_lost is of_coarse.is_lost is False:
         error = 0.0

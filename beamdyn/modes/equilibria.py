@@ -30,6 +30,7 @@ from beamdyn.modes.modal.discretization_choice import (
 )
 from beamdyn.modes.modal.equilibrium import DeflectedSolver, find_bent
 from beamdyn.modes.modal.model import Model
+from beamdyn.modes.model_error.effect_choice import plain_physics
 from beamdyn.modes.model_error.left_out_changes import SolvedValues, left_out_by_solving
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.sharp_bending import warn_of_sharp_bending
@@ -235,7 +236,7 @@ def _with_large_deflection(scene: object, branch: str | None) -> Scene:
     assert isinstance(scene, Scene)
     branch = scene.physics.branch if branch is None else branch
     one_of("branch", branch, ("straight", "bent"))
-    return scene.with_large_deflection(branch=branch)
+    return plain_physics(scene).with_large_deflection(branch=branch)
 
 
 def _directions(mount: Mount) -> np.ndarray:
@@ -269,7 +270,8 @@ class EquilibriumBranch:
         Positions of the tip from the root along b1, b2, b3 [m]: b1 along the beam at its root, b2 across it
         in the plane of rotation, b3 perpendicular to both.
     stable : ndarray of bool, shape (k,)
-        Whether the potential energy, including that of centrifugal forces, has a minimum there.
+        Whether the potential energy, including that of centrifugal forces, has a minimum there; with a load
+        at the tip, whether no small motion grows.
     turning_speeds : ndarray, shape (t,)
         Speeds [rad/s] at which the branch turns back, at a fold or where it meets the straight beam.
 
@@ -364,8 +366,7 @@ def equilibrium_branches(
     (159.818, ['straight', 'bent'])
     """
     start = perf_counter()
-    scene = _with_large_deflection(scene, "straight")
-    top = positive("top_speed", top_speed, "rad/s")
+    scene, top = _with_large_deflection(scene, "straight"), positive("top_speed", top_speed, "rad/s")
     check_speeds(top, "top_speed")
     model = choose_model(scene, discretization, np.array([0.0, top]), 1)
     solver = model.deflected
@@ -399,9 +400,8 @@ def _collect(name: str, solver: DeflectedSolver, start: continuation.Point, top:
     with suppress(continuation.NotConverged):  # the points end where the branch cannot be continued
         for point in continuation.follow(load, start, _FINE):
             if point.p >= top**2 and point.p_rate:
-                points.append(
-                    replace(point, q=continuation.find_at(load, points[-1], point, top**2), p=top**2)
-                )
+                at_top = continuation.find_at(load, points[-1], point, top**2)
+                points.append(replace(point, q=at_top, p=top**2))
                 break
             points.append(point)
             if np.abs(point.q @ load.angles).max() > _STEEPEST or len(points) > _MOST_POINTS:

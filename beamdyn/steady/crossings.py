@@ -75,10 +75,13 @@ class Crossing:
 
 
 def order_by_speed(crossings: Sequence[Crossing]) -> tuple[Crossing, ...]:
-    """Sort crossings by speed, and those at one speed by kind and mode, so that rounding does not decide."""
+    """Sort crossings by speed, and those at one speed by kind and modes, so that rounding does not decide."""
     by_speed = sorted(crossings, key=lambda crossing: crossing.speed)
     places = number_groups(np.array([crossing.speed for crossing in by_speed]), _SAME_SPEED)
-    keyed = [(at, each.kind, each.mode, k) for k, (at, each) in enumerate(zip(places, by_speed, strict=True))]
+    keyed = [
+        (at, each.kind, each.mode, each.second_mode or each.mode, k)
+        for k, (at, each) in enumerate(zip(places, by_speed, strict=True))
+    ]
     return tuple(by_speed[k] for *_, k in sorted(keyed))
 
 

@@ -178,6 +178,19 @@ def test_stated_errors_cover_rounding_that_resonance_magnifies(mode, discretizat
     assert abs(found.response[0, 0] - exact) <= found.error[0, 0]
 
 
+@pytest.mark.parametrize("beside", [-1, 0, 1])
+@pytest.mark.parametrize("speed", [0.0, 20.0, 50.0])
+def test_an_undamped_response_at_a_natural_frequency_has_an_immense_error_or_is_refused(speed, beside):
+    scene = bd.Scene(bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0), bd.Mount(0.215, 0.3))
+    first = bd.natural_modes(scene, speed, 1).frequency[0]
+    f = np.nextafter(first, first + beside)
+    try:
+        found = bd.frequency_response(scene, speed, [f])
+        assert np.isfinite(found.error).all() and (found.error > 0.01 * np.abs(found.response)).all()
+    except ValueError as error:
+        assert "no finite response at a natural frequency" in str(error)
+
+
 def test_the_moment_at_a_root_that_material_damping_holds():
     """A nearly rigid beam turns about its spring, which takes part in C = alpha M + beta K."""
     spring, beta = 1e-8, 0.3

@@ -121,6 +121,15 @@ def test_a_speed_that_differs_by_rounding_is_reached(
     assert np.abs(np.diff(beside, axis=0) @ solver.load.angles).max() < 1e-8  # rounding of a stiff blade
 
 
+@pytest.mark.parametrize("digits", [(1, 2), (-2, -5), (0, 1, 2, 3), (-1e3, 1, 3)])
+def test_several_speeds_that_differ_by_rounding_are_reached_together(digits: tuple[float, ...]) -> None:
+    """As when several lines meet a frequency at one speed."""
+    solver = Model(bd.load_scene(EXAMPLES / "iea_15_blade.toml"), bd.Ritz(14, "moments")).deflected
+    known = solver.equilibria(np.array([0.9]))
+    beside = solver.equilibria(0.9 * (1 + np.array(digits) * EPS))
+    assert np.abs((beside - known) @ solver.load.angles).max() < 1e-8
+
+
 def test_no_step_leads_past_where_a_nearly_straight_beam_begins_to_bend() -> None:
     found = bd.equilibrium(harvester(1e-6), 162.0)  # a straight beam buckles at 159.8 rad/s
     assert found.stable
@@ -366,6 +375,21 @@ def beck(push: float, across: float = 0.0) -> bd.Scene:
     return bd.Scene(
         bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.0, math.pi), physics=BENT, tip_load=load
     )
+
+
+@pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties
+@pytest.mark.parametrize(
+    ("basis", "ratio", "error"),
+    [(bd.Ritz(3), 1.0003, math.inf), (bd.Fem(10), 1.00001, math.inf), (bd.Ritz(12), 1.0003, 1e-10)],
+)
+def test_a_load_that_buckles_the_finer_of_two_models_at_rest(
+    basis: bd.Ritz | bd.Fem, ratio: float, error: float
+) -> None:
+    """The coarser one is stiffer, and loses stability at a speed; Euler's load is pi^2/4."""
+    load = bd.TipLoad((-ratio * math.pi**2 / 4, 0.0, 0.0))
+    scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.5), physics=BENT, tip_load=load)
+    found = bd.critical_point(scene, basis)
+    assert (found.speed, found.error) == (0.0, error)
 
 
 @pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties

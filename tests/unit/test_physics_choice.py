@@ -441,6 +441,15 @@ def test_a_beam_of_section_matrices_is_a_beam_in_space_from_the_start() -> None:
     np.testing.assert_allclose(chosen.frequency, given.frequency, rtol=1e-12)  # the same model
 
 
+@pytest.mark.parametrize(("name", "speed"), [("iea_15_blade", 0.8), ("swept_blade", 78.5)])
+def test_equilibria_of_a_beam_that_straight_equations_refuse_begin_in_space(name: str, speed: float) -> None:
+    """A swept blade that bends in one plane alone has another deflection."""
+    scene = bd.load_scene(EXAMPLES / f"{name}.toml")
+    given, chosen = (bd.equilibrium(s, speed) for s in (scene, replace(scene, physics="auto")))
+    assert chosen.scene.physics.torsion
+    np.testing.assert_allclose(chosen.tip, given.tip, rtol=0, atol=given.error)
+
+
 @pytest.mark.parametrize("name", ["iea_15_blade", "swept_blade"])
 def test_terms_of_a_beam_that_straight_equations_refuse_are_listed(name: str) -> None:
     scene = replace(bd.load_scene(EXAMPLES / f"{name}.toml"), physics="auto")

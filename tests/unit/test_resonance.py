@@ -369,6 +369,8 @@ def test_crossings_at_one_speed_keep_their_order_whatever_rounding_makes_of_it()
     ordered = order_by_speed([later, *around[::-1], replace(first, mode=2)])
     assert [c.kind for c in ordered] == ["forced"] * 3 + ["parametric"] * 2 + ["forced"]
     assert [c.mode for c in ordered] == [1, 1, 2, 1, 1, 3]
+    pairs = [replace(first, second_mode=k, speed=first.speed * (1 - k * 1e-13)) for k in (2, 3)]
+    assert [c.second_mode for c in order_by_speed([*pairs, first])] == [None, 2, 3]
     assert order_by_speed([]) == ()
 
 

@@ -214,14 +214,15 @@ def reach(load: Loading, start: Point, goals: Sequence[float]) -> np.ndarray:
         reason and the parameter at which this happens.
     """
     found, before, towards, why = [], start, np.sign(start.p_rate), "could not be followed beyond"
-    step = (goals[-1] - start.p) / (start.p_rate * load.scale)
+    steps = (np.array(goals) - start.p) / (start.p_rate * load.scale)
     with suppress(NotConverged):
-        if len(goals) == 1 and step < _LONGEST:  # one step is enough if the curve hardly turns
-            q = solve_at(load, start.q + step * start.q_rate, goals[0], max(_STRAYED * step, _SHORTEST))
-            turned = (start_curve(load, q, goals[0], towards).q_rate - start.q_rate) @ load.angles
-            same = count_negative(load, q, goals[0]) == count_negative(load, start.q, start.p)
+        if steps[-1] < _LONGEST:  # one step is enough if the curve hardly turns
+            near = zip(goals, steps, start.q + steps[:, None] * start.q_rate, strict=True)
+            direct = [solve_at(load, q, p, max(_STRAYED * step, _SHORTEST)) for p, step, q in near]
+            turned = (start_curve(load, direct[-1], goals[-1], towards).q_rate - start.q_rate) @ load.angles
+            same = count_negative(load, direct[-1], goals[-1]) == count_negative(load, start.q, start.p)
             if same and np.abs(turned).max() < _STRAYED:
-                return q[None]
+                return np.array(direct)
     with suppress(NotConverged):
         for after in follow(load, start, goal=goals[-1]):
             while len(found) < len(goals) and towards * (after.p - goals[len(found)]) >= 0:
