@@ -30,7 +30,7 @@ from rich.markup import escape
 from rich.table import Table
 
 import beamdyn as bd
-from beamdyn.modes.modal.equilibrium import load_by_rotation
+from beamdyn.modes.modal.equilibrium import DeflectedSolver
 from beamdyn.modes.modal.model import Model
 from benchmarks.peers import calculix, exudyn, hexahedra, ours, page, tables
 from benchmarks.peers.bent import DISPLACEMENTS
@@ -242,7 +242,7 @@ def without_shortening(case: Case) -> np.ndarray:
     """Compute the position (3,) of the tip [m] without shortening by twist, as in Exudyn."""
     bent = Model(case.scene, bd.Ritz(14)).bent
     bent = replace(bent, beam=replace(bent.beam, fibres=np.zeros_like(bent.beam.fibres)))
-    return bent.beam.at(load_by_rotation(bent, 1.0).at_rest).tip
+    return bent.beam.at(DeflectedSolver(bent, "straight").load.at_rest).tip
 
 
 def rows(solids: int) -> Iterator[Row]:
