@@ -226,7 +226,7 @@ def main() -> None:
 
     sys.path.insert(0, str(ROOT))  # the code beside this script, not what is installed
     mpl.rcParams["svg.hashsalt"] = "architecture"  # the same file each time
-    ax, left, counts = Figure(figsize=(10.4, 9.4)).add_axes((0, 0, 1, 1)), 0.0, []
+    ax, left, counts = Figure(figsize=(10.4, 10.4)).add_axes((0, 0, 1, 1)), 0.0, []
     for package in COLOURS:
         imports = count_imports(package)
         counts.append(len(imports))
@@ -235,8 +235,8 @@ def main() -> None:
             print(f"{package}: {importer} -> {imported} {count}")
     lowest = -max(len(read_layers(package)) for package in COLOURS) + 1
     note = NOTE.format(counts=" and ".join(map(str, counts)))
-    ax.text(left - 0.85, lowest - 0.2, note, ha="right", ma="left", fontsize=8.5, linespacing=1.4)
-    ax.set(xlim=(-0.8, left - 0.5), ylim=(lowest - 0.4, 0.8))
+    ax.text(left - 0.85, lowest - 0.6, note, ha="right", va="top", ma="left", fontsize=8.5, linespacing=1.4)
+    ax.set(xlim=(-0.8, left - 0.5), ylim=(lowest - 2.4, 0.8))
     ax.axis("off")
     ax.get_figure().savefig(PICTURE, metadata={"Date": None})
 
