@@ -242,20 +242,20 @@ class DeflectedSolver(Solver):
     def equilibria(self, speeds: np.ndarray) -> np.ndarray:
         """Compute the equilibrium coordinates at each speed, in rows; results are cached."""
         missing = np.array([v for v in np.unique(np.abs(speeds)) if v not in self._found])
-        if self.guide is not None and len(missing):
+        if guide := self.guide:
             # An equilibrium close to that of the guide is taken if as many eigenvalues are negative there.
-            for v, of_guide in zip(missing.tolist(), self.guide.equilibria(missing), strict=True):
-                near = self.elastica.nearest(self.guide.elastica, of_guide)
-                with suppress(NotConverged):
-                    q = continuation.solve_at(self.load, near, v**2, _NEAR)
-                    if count_negative(self.load, q, v**2) == count_negative(self.guide.load, of_guide, v**2):
+            for v in missing.tolist():
+                with suppress(NotConverged, NoEquilibrium):
+                    near = guide.equilibria(np.array([v]))[0]
+                    start = self.elastica.nearest(guide.elastica, near)
+                    q = continuation.solve_at(self.load, start, v**2, _NEAR)
+                    if count_negative(self.load, q, v**2) == count_negative(guide.load, near, v**2):
                         self._found[v] = q
             missing = np.array([v for v in missing if v not in self._found])
         if len(missing):
-            if not self._found and self.branch == "straight":
-                self._found[0.0] = self.load.at_rest
-            elif not self._found:
-                self._found[float(missing[-1])] = find_bent(self.load, float(missing[-1]))
+            if not self._found:
+                from_rest, v = self.branch == "straight", float(missing[-1])
+                self._found |= {0.0: self.load.at_rest} if from_rest else {v: find_bent(self.load, v)}
             start = min(self._found, key=lambda v: abs(v - missing[0]))
             followed = follow_to(self.load, missing, self._found[start], start)
             self._found.update(zip(missing.tolist(), followed, strict=True))

@@ -39,6 +39,8 @@ if TYPE_CHECKING:
     from beamdyn.equations.beam_in_space.rotating_beam import RotatingBeam
     from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
+_MANY = 100  # number of coordinates of a mesh, above which it is worth computing a coarser one first
+
 
 @dataclass(frozen=True)
 class Model(FieldsOnly):
@@ -90,11 +92,19 @@ class Model(FieldsOnly):
 
     @cached_property
     def deflected(self) -> DeflectedSolver:
-        """Eigensolver for small motions about equilibria with any deflection."""
+        """Eigensolver for small motions about equilibria with any deflection.
+
+        Equilibria of many elements are found near those of the coarser mesh, whose steps cost far less.
+        """
         # The import is inside the function because few scenes need the module.
         from beamdyn.modes.modal.equilibrium import DeflectedSolver
 
-        return DeflectedSolver(self.bent, self.scene.physics.branch)
+        guide = self.coarser.deflected if self._has_many_elements else None
+        return DeflectedSolver(self.bent, self.scene.physics.branch, guide)
+
+    @property
+    def _has_many_elements(self) -> bool:
+        return self.discretization.order is not None and self.equations.size > _MANY
 
     @cached_property
     def bent(self) -> RotatingBeam:
@@ -109,7 +119,8 @@ class Model(FieldsOnly):
     def coarse_solver(self) -> Eigensolver:
         """Eigensolver of the coarser model that error estimates use for comparison."""
         if self.scene.physics.large_deflection:
-            return self.deflected.guiding(self.compared.bent)
+            has_guided = self._has_many_elements
+            return self.coarser.deflected if has_guided else self.deflected.guiding(self.compared.bent)
         coarse = self.equations.coarse
         if coarse is None:
             return self.coarser.solver

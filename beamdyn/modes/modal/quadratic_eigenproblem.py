@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import scipy.linalg
 from scipy.linalg.lapack import zheevr
@@ -9,6 +11,10 @@ from scipy.linalg.lapack import zheevr
 from beamdyn.modes.modal.springs import SPLIT_ROOT
 
 _EPS = np.finfo(float).eps
+# In large problems few modes are sought in Krylov spaces, of at most this number of blocks of vectors.
+_MOST_BLOCKS = 20
+_EXTRA = 8  # number of vectors in a block beyond that of the modes
+_CONVERGED = 64 * _EPS  # norm of an eigenpair's residual, over the largest eigenvalue, that is rounding
 _MASSLESS = 16 * _EPS  # relative eigenvalue of a mass matrix, below which it is 0 within rounding
 
 
@@ -21,12 +27,50 @@ def solve_gyroscopic(
     """
     n, scale, count = len(d), 1 / np.sqrt(d), min(count, len(d))
     mu, U = np.linalg.eigh(scale[:, None] * M * scale)
+    C, inertia = scale[:, None] * C * scale, U * np.sqrt(np.maximum(mu, 0))
+    scales, block = np.concatenate([scale, np.ones(n)])[:, None], count + _EXTRA
+    if _MOST_BLOCKS * block < n:
+        undamped = np.concatenate([U[:, -block:], 1j * np.eye(n)[:, -block:]])
+        if found := _find_largest(lambda y: _times_pencil(C, inertia, y), undamped, count):
+            return found[0] / 1j, found[1] * scales
     W = np.zeros((2 * n, 2 * n), dtype=complex, order="F")  # Hermitian; only its upper half is set
-    W[:n, :n], W[:n, n:] = -1j * (scale[:, None] * C * scale), -1j * (U * np.sqrt(np.maximum(mu, 0)))
+    W[:n, :n], W[:n, n:] = -1j * C, -1j * inertia
     theta, y, _, _, failed = zheevr(W, range="I", il=2 * n - count + 1, iu=2 * n, overwrite_a=1)
     if failed:
         raise np.linalg.LinAlgError
-    return theta[:count] / 1j, y * np.concatenate([scale, np.ones(n)])[:, None]
+    return theta[:count] / 1j, y * scales
+
+
+def _times_pencil(C: np.ndarray, inertia: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Multiply the Hermitian matrix -i [[C, inertia], [-inertia^T, 0]] with columns y, by real products."""
+    parts = np.ascontiguousarray(y).view(float)
+    z, w = np.split(parts, 2)
+    return -1j * np.concatenate([C @ z + inertia @ w, -inertia.T @ z]).view(complex)
+
+
+def _find_largest(
+    multiply: Callable[[np.ndarray], np.ndarray], start: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray] | None:
+    """Find the `count` largest eigenvalues of a Hermitian matrix, ascending, and its eigenvectors.
+
+    The vectors are sought in the block Krylov space of the columns `start` and of vectors that no symmetry
+    of the matrix excludes, which grows until more than `count` eigenpairs are exact within rounding.  Return
+    None if they are not when the space has `_MOST_BLOCKS` blocks.
+    """
+    wanted = slice(-count - _EXTRA // 2, None)
+    generic = np.random.default_rng(0).standard_normal((len(start), _EXTRA))
+    basis, block = np.empty((len(start), 0), dtype=complex), np.concatenate([start, generic], axis=1)
+    products = basis
+    for _ in range(_MOST_BLOCKS):
+        for _ in range(2):  # the second time removes what rounding has left
+            block = np.linalg.qr(block - basis @ (basis.conj().T @ block))[0]
+        basis, products = np.c_[basis, block], np.c_[products, block := multiply(block)]
+        theta, Y = np.linalg.eigh(basis.conj().T @ products)
+        theta, Y = theta[wanted], Y[:, wanted]
+        residual = np.linalg.norm(products @ Y - theta * (basis @ Y), axis=0)
+        if (residual <= _CONVERGED * theta[-1]).all():
+            return theta[-count:], basis @ Y[:, -count:]
+    return None
 
 
 def solve_general(M: np.ndarray, C: np.ndarray, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
