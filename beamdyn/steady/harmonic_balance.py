@@ -18,12 +18,15 @@ on the left, except near a resonance.  So the equations are solved iteratively, 
 previous iteration in the coupling terms: each iteration multiplies the error by the ratio of the coupling to
 that factor, some 1e-3, so that a few iterations reach rounding error.
 
+Where damping, a gyroscopic term or a circuit couples modes strongly, the matrix of the mean equations at each
+Omega_h replaces that factor, and only the periodic coefficients count as coupling.
+
 In shapes of arrays, H counts harmonics, n coordinates, S speeds, and N samples of a phase.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -42,7 +45,7 @@ _WORTH_LEAVING_OUT = 0.25
 def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
     """Solve for given harmonics of the response by a series of interactions.
 
-    At phase rates at which the series does not converge, one matrix of all harmonics is solved instead.
+    At phase rates at which no series converges, one matrix of all harmonics is solved instead.
 
     Parameters
     ----------
@@ -56,12 +59,19 @@ def solve_harmonic_balance(system: PeriodicSystem, harmonics: Sequence[Pair]) ->
     ndarray of complex, shape (S, H, coordinates)
         Harmonics q_h of the response; nan where the equations are singular.
     """
-    response, settled = sum_interactions(system, harmonics)
-    others, entries = np.flatnonzero(~settled), (system.size * len(harmonics)) ** 2
-    for rows in np.array_split(others, 1 + len(others) * entries // _MOST_ENTRIES):
-        if len(rows):
-            response[rows] = solve_at_once(system[rows], harmonics)
+    response, settled = sum_interactions(system, harmonics, _Series.by_modes)
+    for rows in _batches(~settled, system.size**2 * len(harmonics)):
+        response[rows], settled[rows] = sum_interactions(system[rows], harmonics, _Series.by_matrices)
+    for rows in _batches(~settled, (system.size * len(harmonics)) ** 2):
+        response[rows] = solve_at_once(system[rows], harmonics)
     return response
+
+
+def _batches(chosen: np.ndarray, entries: int) -> list[np.ndarray]:
+    """Split the indices of chosen pairs of phase rates, each with a number of entries, into batches."""
+    indices = np.flatnonzero(chosen)
+    parts = np.array_split(indices, 1 + len(indices) * entries // _MOST_ENTRIES)
+    return [part for part in parts if len(part)]
 
 
 def solve_at_once(system: PeriodicSystem, harmonics: Sequence[Pair]) -> np.ndarray:
@@ -167,8 +177,12 @@ def _add_products(A: np.ndarray, factors: np.ndarray, matrices: np.ndarray) -> N
 # Series of interactions ----------------------------------------------------------------------------
 
 
-def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple[np.ndarray, np.ndarray]:
-    """Sum the series of interactions for given harmonics of the response.
+def sum_interactions(
+    system: PeriodicSystem,
+    harmonics: Sequence[Pair],
+    series_of: Callable[[PeriodicSystem, list[Pair]], _Series | None],
+) -> tuple[np.ndarray, np.ndarray]:
+    """Sum a series of interactions for given harmonics of the response.
 
     Parameters
     ----------
@@ -176,6 +190,8 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
         The equations at S pairs of phase rates [rad/s].
     harmonics : sequence of pair, length H
         Harmonics (j, k) to keep; for each, the opposite (-j, -k) must also be in the sequence.
+    series_of : callable
+        Function that builds the series, or returns None if it does not exist.
 
     Returns
     -------
@@ -186,16 +202,11 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
     """
     S, n = len(system.rates), system.size
     response, settled = np.full((S, len(harmonics), n), np.nan, dtype=complex), np.zeros(S, dtype=bool)
-    if system.is_free(np.array(harmonics)).any():  # without stiffness a static response is infinite
-        return response, settled
-    try:
-        mean = MeanModes.of_system(system)
-    except np.linalg.LinAlgError:
-        return response, settled
     half = [h for h in harmonics if h >= (0, 0)]  # the harmonics -h are the conjugates of these
     with np.errstate(all="ignore"):  # the series may diverge, or a harmonic may be in resonance
-        series = _Series.of_system(system, mean, half)
-        y = series.load * series.compliance
+        if (series := series_of(system, half)) is None:
+            return response, settled
+        shapes, y = series.shapes, series.comply(series.load)
         found, left = np.full_like(y, np.nan), np.arange(S)
         for _ in range(_MOST_TERMS):
             last, y = y, series.respond(y)
@@ -207,7 +218,7 @@ def sum_interactions(system: PeriodicSystem, harmonics: Sequence[Pair]) -> tuple
                 break
             if now.mean() >= _WORTH_LEAVING_OUT:
                 y, left, series = y[..., ~now], left[~now], series[~now]
-    q = np.einsum("snm,hms->shn", mean.shapes, found)
+    q = np.einsum("snm,hms->shn", shapes, found)
     index = {h: i for i, h in enumerate(half)}
     for place, h in enumerate(harmonics):
         response[:, place] = q[:, index[h]] if h in index else q[:, index[-h[0], -h[1]]].conj()
@@ -283,22 +294,27 @@ class _Products:
 
 @dataclass(frozen=True)
 class _Series:
-    """Terms of the series of interactions, for H harmonics, n modes and S pairs of phase rates.
+    """Terms of a series of interactions, for H harmonics, n modes or coordinates and S pairs of phase rates.
+
+    Of the H harmonics, none is the opposite of another.
 
     Parameters
     ----------
+    shapes : ndarray, shape (S, coordinates, n)
+        Modes, in columns.
     load : ndarray of complex, shape (H, n, S)
         Harmonics of the modal load.
-    compliance : ndarray of complex, shape (H, n, S)
-        Response of each uncoupled mode to a load of each harmonic.
+    compliance : ndarray of complex, shape (H, n, S) or (H, n, n, S)
+        Response of each uncoupled mode to a load of each harmonic, or matrix of the responses of all.
     rate : ndarray of complex, shape (H, 1, S)
         Factor i Omega_h [1/s] of a time derivative.
     damping : ndarray, shape (n, n, S), or None
-        Damping between different modes; None if there is none.
+        Damping between different modes that `compliance` does not contain; None if there is none.
     products : tuple of _Products
         Products with the periodic coefficients.
     """
 
+    shapes: np.ndarray
     load: np.ndarray
     compliance: np.ndarray
     rate: np.ndarray
@@ -306,28 +322,68 @@ class _Series:
     products: tuple[_Products, ...]
 
     @classmethod
-    def of_system(cls, system: PeriodicSystem, mean: MeanModes, harmonics: list[Pair]) -> _Series:
-        """Build the series for harmonics of which none is the opposite of another, in the modes `mean`."""
+    def by_modes(cls, system: PeriodicSystem, harmonics: list[Pair]) -> _Series | None:
+        """Build the series in the undamped modes of the mean equations.
+
+        There is none without stiffness, or without mass.
+        """
         h, C = np.array(harmonics), system.mean[1]
-        rate = 1j * (h @ system.rates.T)[:, None]
+        if system.is_free(h).any():  # without stiffness a static response is infinite
+            return None
+        try:
+            mean = MeanModes.of_system(system)
+        except np.linalg.LinAlgError:
+            return None
+        rate = _rates(system, h)
         damping = mean.transform(C) if C.any() else None
         resistance = mean.squared.T + rate**2
         if damping is not None:
             own = np.arange(system.size)
             resistance = resistance + rate * damping[own, own]
             damping[own, own] = 0.0
+        return cls._of(system, harmonics, mean, 1 / resistance, damping)
+
+    @classmethod
+    def by_matrices(cls, system: PeriodicSystem, harmonics: list[Pair]) -> _Series | None:
+        """Build the series in the coordinates, with the inverse matrices of the mean equations.
+
+        There is none if a matrix is singular.
+        """
+        (K, C, M), h = system.mean, np.array(harmonics)
+        rate = _rates(system, h)[:, 0, :, None, None]
+        matrices = K + rate * C + rate**2 * M
+        own = np.arange(system.size)
+        matrices[..., own, own] += np.swapaxes(system.is_free(h), 0, 1)
+        try:
+            compliance = np.ascontiguousarray(np.moveaxis(np.linalg.inv(matrices), 1, -1))
+        except np.linalg.LinAlgError:
+            return None
+        coordinates = np.broadcast_to(np.eye(system.size), K.shape)
+        return cls._of(system, harmonics, MeanModes(np.zeros(K.shape[:2]), coordinates), compliance, None)
+
+    @classmethod
+    def _of(
+        cls,
+        system: PeriodicSystem,
+        harmonics: list[Pair],
+        mean: MeanModes,
+        compliance: np.ndarray,
+        damping: np.ndarray | None,
+    ) -> _Series:
+        """Build the series with the loads and the periodic coefficients of a system in given modes."""
+        h = np.array(harmonics)
         load = np.zeros((len(h), system.size, len(system.rates)), dtype=complex)
         for spectrum, vector in system.loads:
             in_modes = np.einsum("snm,sn->ms", mean.shapes, vector)
             load += select_harmonics(spectrum, h).T[:, None] * in_modes
         products = tuple(_Products.of(*each, mean, harmonics) for each in system.varying)
-        return cls(load, 1 / resistance, rate, damping, products)
+        return cls(mean.shapes, load, compliance, _rates(system, h), damping, products)
 
     def __getitem__(self, chosen: np.ndarray) -> _Series:
         damping = None if self.damping is None else self.damping[..., chosen]
         products = tuple(each[chosen] for each in self.products)
         load, compliance, rate = (each[..., chosen] for each in (self.load, self.compliance, self.rate))
-        return _Series(load, compliance, rate, damping, products)
+        return _Series(self.shapes, load, compliance, rate, damping, products)
 
     def respond(self, y: np.ndarray) -> np.ndarray:
         """Compute the next iterate of the response (H, n, S), with coupling terms from the last iterate y."""
@@ -337,12 +393,21 @@ class _Series:
             force -= products.sum(of_rate * both, len(y))
         if self.damping is not None:
             force -= self.rate * _multiply(self.damping, y)
-        return force * self.compliance
+        return self.comply(force)
+
+    def comply(self, force: np.ndarray) -> np.ndarray:
+        """Compute the response (H, n, S) to forces (H, n, S) without coupling terms."""
+        return force * self.compliance if self.compliance.ndim == 3 else _multiply(self.compliance, force)
+
+
+def _rates(system: PeriodicSystem, h: np.ndarray) -> np.ndarray:
+    """Compute the factors i Omega_h [1/s] of time derivatives of the harmonics h: (H, 1, S)."""
+    return 1j * (h @ system.rates.T)[:, None]
 
 
 def _multiply(matrix: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Multiply the matrix (n, n, S) by the response y (harmonics, n, S), for each pair of phase rates."""
+    """Multiply y (H, n, S), for each pair of phase rates, by matrices (n, n, S), or (H, n, n, S)."""
     total = np.empty_like(y)
-    for row, out in zip(matrix, np.moveaxis(total, 1, 0), strict=True):
+    for row, out in zip(np.moveaxis(matrix, -3, 0), np.moveaxis(total, 1, 0), strict=True):
         out[:] = (row * y).sum(axis=1)
     return total

@@ -10,7 +10,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.modes.modal.discretization_choice import choose_model
-from beamdyn.steady.harmonic_balance import solve_at_once, solve_harmonic_balance, sum_interactions
+from beamdyn.steady.harmonic_balance import _Series, solve_at_once, solve_harmonic_balance, sum_interactions
 from beamdyn.steady.largest_over_phases import largest_over_phases
 from beamdyn.steady.periodic_system import Pair, PeriodicSystem, generate_harmonics, periodic_system
 from beamdyn.steady.stability import _MeanMotion, growth_rate
@@ -52,7 +52,7 @@ def harmonics_of(system: PeriodicSystem) -> list[Pair]:
 def test_series_is_the_solution_of_all_harmonics_at_once(name: str) -> None:
     system = system_of(WEAKLY_COUPLED[name], np.linspace(1.5, 150.0, 23))
     harmonics = harmonics_of(system)
-    response, settled = sum_interactions(system, harmonics)
+    response, settled = sum_interactions(system, harmonics, _Series.by_modes)
     assert settled.all()
     # Rounding, which resonance of some harmonic at these speeds raises by up to 1e3.
     assert_close(response, solve_at_once(system, harmonics), 1e-12)
@@ -63,9 +63,20 @@ def test_equations_that_the_series_does_not_settle_are_solved_at_once(name: str)
     scene, top = STRONGLY_COUPLED[name]
     system = system_of(scene, np.linspace(0.01 * top, top, 23))
     harmonics = harmonics_of(system)
-    response, settled = sum_interactions(system, harmonics)
+    response, settled = sum_interactions(system, harmonics, _Series.by_modes)
     assert not settled.all() and np.isnan(response[~settled]).all()
     assert_close(solve_harmonic_balance(system, harmonics), solve_at_once(system, harmonics), 1e-11)
+
+
+def test_series_by_matrices_settles_where_a_circuit_couples_the_modes() -> None:
+    """The circuit's flux has no stiffness, so that there is no series in undamped modes."""
+    scene = bd.load_scene("examples/bimorph.toml")
+    system = system_of(scene, np.linspace(1.5, 130.0, 23))
+    harmonics = harmonics_of(system)
+    assert not sum_interactions(system, harmonics, _Series.by_modes)[1].any()
+    response, settled = sum_interactions(system, harmonics, _Series.by_matrices)
+    assert settled.all()
+    assert_close(response, solve_at_once(system, harmonics), 1e-12)
 
 
 def assert_close(found: np.ndarray, expected: np.ndarray, rtol: float) -> None:
