@@ -120,6 +120,8 @@ class Sweep(SceneResult, StatesModelError):
     t_end: float
 
     judged_by_solving: ClassVar[bool] = True
+    # Arguments with which the model error repeats a case; None in a result that was loaded from a file.
+    request: ClassVar[SweepRequest | None] = None
 
     def headline(self) -> Iterator[str]:
         """Yield speeds, the largest peak and its error for a one-line summary; see `Result.headline`."""
@@ -149,10 +151,16 @@ class Sweep(SceneResult, StatesModelError):
         """Relative changes (1,) of the largest peak by each neglected effect, from repeating its run."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
-        motion = self.scene.motion.with_speed(float(self.left_out_speeds[0]))
-        with unannounced():  # the field `warnings` already contains the warnings of the repeated run
-            run = simulate(replace(self.scene, motion=motion), self.t_end)
-        return left_out_of_transient(run.request, run.solution, self.window).at(np.newaxis)
+        speed = float(self.left_out_speeds[0])
+        if self.request is not None:
+            case = self.request.transient_request(speed)
+            found = case.solve()
+        else:
+            motion = self.scene.motion.with_speed(speed)
+            with unannounced():  # the field `warnings` already contains the warnings of the repeated run
+                run = simulate(replace(self.scene, motion=motion), self.t_end)
+            case, found = run.request, run.solution
+        return left_out_of_transient(case, found, self.window).at(np.newaxis)
 
     def is_warned(self, tolerance: float) -> np.ndarray:
         """Return for each speed whether a warning applies, given the tolerance of the runs."""
@@ -292,7 +300,9 @@ def sweep(
         scene=scene,
     )
     missed = () if basis else warn_of_missed_modes(mode_error, request.tolerance, request.basis_name)
-    return replace(result, warnings=(*_warnings(result, request.tolerance), *missed, *runner.warnings))
+    found = replace(result, warnings=(*_warnings(result, request.tolerance), *missed, *runner.warnings))
+    vars(found)["request"] = replace(request, scene=scene)
+    return found
 
 
 @dataclass(frozen=True)

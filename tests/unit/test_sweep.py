@@ -67,6 +67,14 @@ def test_modes_at_rest_are_taken_where_they_suffice_for_all_cases(angle, fastest
     assert suffices == (angle == 1.0)  # both outcomes are seen
 
 
+def test_model_error_is_that_of_the_worst_case_with_the_modes_of_the_sweep():
+    rough = bd.sweep(SCENE, SPEEDS[1:3], (0.0, WINDOW[1]), modes=1, tolerance=1e-3)
+    worst = replace(SCENE, motion=MOTION.with_speed(float(rough.left_out_speeds[0])))
+    alone = bd.simulate(worst, WINDOW[1], 1, 1e-3)
+    changes = rough.left_out_effects.changes
+    assert any(changes.values()) and changes == alone.left_out_effects.changes
+
+
 def test_tables_and_columns_have_the_error_of_the_modes(found):
     """Half a unit of the last digit that is printed is not below both errors; 0 deflects by none."""
     rough = replace(found, mode_error=2e-3)
