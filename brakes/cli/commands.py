@@ -218,8 +218,7 @@ def _answer_many(
     """
     import numpy as np
 
-    from brakes.answers.finding import find_in_file
-    from brakes.answers.spread import spread_of_brake
+    from brakes.answers.finding import find_in_file, spread_of_brake
 
     if asked.finding.find and asked.finding.so_that:
         made = find_in_file(brake, tables, file, asked.finding.find, asked.finding.so_that)
