@@ -24,9 +24,8 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 from beamdyn.studies.floquet.exponents import largest_exponent
-from beamdyn.studies.floquet.monodromy import COARSER, meet_again
+from beamdyn.studies.floquet.monodromy import COARSER, PeriodicScenes, check_periodic, meet_again
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 
 MULTIPLIERS, EXPONENT = "multipliers", "exponent"
 _ON_CIRCLE = "stability is not decided: multipliers meet, or lie on the unit circle, within their errors"

@@ -39,9 +39,16 @@ from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 from beamdyn.studies.floquet.exponents import largest_exponent
 from beamdyn.studies.floquet.interpolation import interpolate_on_grid
-from beamdyn.studies.floquet.monodromy import COARSER, Monodromy, meet_again, period_of, rates_of
+from beamdyn.studies.floquet.monodromy import (
+    COARSER,
+    Monodromy,
+    PeriodicScenes,
+    check_periodic,
+    meet_again,
+    period_of,
+    rates_of,
+)
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 from beamdyn.studies.study import VERSIONS
 
 _NAMES = "status", "rate", "error", "radius", "period"
