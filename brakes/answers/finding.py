@@ -30,7 +30,7 @@ from brakes.answers.base import ERROR, BrakeType, SweepRequest
 from brakes.answers.tables import SCALES
 from brakes.common.finding import find, find_whole
 from brakes.common.solutions import Solutions
-from brakes.config.caliper import Angle
+from brakes.config.mechanism import Angle
 
 
 def spread_of_brake(
