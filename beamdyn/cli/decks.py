@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from cyclopts import App, Parameter
 
@@ -13,11 +13,8 @@ from beamdyn.common.edge.command_options import Flag, Outputs
 from beamdyn.common.edge.console import show, table
 from beamdyn.common.edge.exit_codes import examples, warn
 from beamdyn.common.results.files import check_writable, write_text
-from beamdyn.files.decks.deck import read_deck
+from beamdyn.files.decks.deck import Deck, read_deck
 from beamdyn.files.decks.deck_tables import deck_tables
-
-if TYPE_CHECKING:
-    from beamdyn.files.decks.deck import Deck
 
 DeckFile = Annotated[Path, Parameter(name="FILE")]
 Output = Annotated[Path | None, Parameter(name=("--output", "-o"))]

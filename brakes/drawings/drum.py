@@ -112,11 +112,6 @@ def _on_rim(r: float, alpha: np.ndarray) -> np.ndarray:
     return r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
 
 
-def pressures(ax: Axes, result: BrakeResult) -> Axes:
-    """Draw the pressure over the linings in matplotlib axes; for a single case."""
-    return plot_chart(ax, pressure_chart(result))
-
-
 def pressure_chart(result: BrakeResult) -> Chart:
     """Make the chart of one case's pressure along each lining, with vertical lines to zero at its ends."""
     curves = []
