@@ -19,7 +19,6 @@ from beamdyn.common.edge.rendering import html
 from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
-from beamdyn.common.screens.compared_designs import with_other_curves
 from beamdyn.common.screens.computations import BusyRow, LatestComputation, download
 from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
@@ -36,6 +35,7 @@ from beamdyn.common.screens.panels import (
     PicturePanel,
     SketchPanel,
     headline_of,
+    with_other_curves,
 )
 from beamdyn.common.screens.processes import RunsTasks, Task
 from beamdyn.common.screens.screen_parts import Handle
