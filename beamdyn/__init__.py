@@ -121,14 +121,12 @@ if TYPE_CHECKING:
     from beamdyn.studies.beside_data.compare import compare
     from beamdyn.studies.beside_data.curve_comparison import CurveComparison
     from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
-    from beamdyn.studies.beside_data.identification import Identification
-    from beamdyn.studies.beside_data.identify import identify
+    from beamdyn.studies.beside_data.identify import Identification, identify
     from beamdyn.studies.beside_data.separability import NotSeparable
     from beamdyn.studies.beside_data.single_numbers import OneNumberFit
     from beamdyn.studies.campbell.diagram import Campbell, campbell
     from beamdyn.studies.campbell.line_crossings import LineCrossing, Margin
-    from beamdyn.studies.designing.design import design
-    from beamdyn.studies.designing.found_design import FoundDesign
+    from beamdyn.studies.designing.design import FoundDesign, design
     from beamdyn.studies.designing.target import Target
     from beamdyn.studies.floquet.point import FloquetMultipliers, floquet_multipliers
     from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart

@@ -57,7 +57,7 @@ PATTERNS = {"compile", "match", "fullmatch", "search", "sub", "split", "findall"
 READERS = {
     "beamdyn/analyses/about_loads.py",
     "beamdyn/analyses/about_linear_models.py",
-    "beamdyn/analyses/about_wanted_answers.py",
+    "beamdyn/analyses/about_data.py",
     "beamdyn/analyses/values.py",
     "beamdyn/app/scene_form.py",
     "beamdyn/analyses/about_campbell.py",

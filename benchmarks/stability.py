@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import beamdyn as bd
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
+from beamdyn.studies.floquet.monodromy import PeriodicScenes
 from beamdyn.transient.system import ModalSystem
 from benchmarks.cases.scenes import HARVESTER
 from benchmarks.rows import Row, show

@@ -19,8 +19,7 @@ _COMMANDS = (
     ("about_designs", "study"),
     ("about_motion", "simulate sweep harvest best-resistance"),
     ("about_stability", "floquet stability-chart stability-limits"),
-    ("about_data", "compare identify"),
-    ("about_wanted_answers", "design"),
+    ("about_data", "compare identify design"),
 )
 COMMANDS = {name: module for module, names in _COMMANDS for name in names.split()}
 

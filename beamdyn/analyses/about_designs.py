@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from cyclopts import Parameter
@@ -16,7 +16,7 @@ from beamdyn.analyses.values import in_unit_of, parse_positive, parse_speed, par
 from beamdyn.common.edge.command_options import NO_SPREAD, NOTHING_VARIED, OPTION, SpreadOptions, VaryOptions
 from beamdyn.common.edge.console import at_work
 from beamdyn.common.edge.inputs import Input, Quantity, describe
-from beamdyn.common.edge.varied_inputs import designs_of, numbers, parse_axis, parse_spreads
+from beamdyn.common.edge.varied_inputs import Axis, designs_of, numbers, parse_axis, parse_spreads
 from beamdyn.common.inputs.checks import check_used
 from beamdyn.common.inputs.described import MOST_DESIGNS, check_designs
 from beamdyn.common.results.columns import ShownUnit
@@ -26,10 +26,6 @@ from beamdyn.scene.numbers import SCALE, SPEED, paths_of, unit_of
 from beamdyn.studies.answers import NO_ANSWERS
 from beamdyn.studies.questions import KINDS
 from beamdyn.studies.spread import nominal_value
-
-if TYPE_CHECKING:
-    from beamdyn.common.edge.varied_inputs import Axis
-
 
 # Sensitivities ---------------------------------------------------------------------------------------
 

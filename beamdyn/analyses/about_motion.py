@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
 import numpy as np
 
@@ -21,13 +21,10 @@ from beamdyn.common.edge.console import at_work
 from beamdyn.common.edge.exit_codes import Interrupted
 from beamdyn.common.plots.export import animate
 from beamdyn.common.results.columns import evenly_spread
+from beamdyn.common.results.result import Result
 from beamdyn.common.words import at_any
 from beamdyn.steady.best_resistance import ROUGH, sought
 from beamdyn.steady.harvest import harvested
-
-if TYPE_CHECKING:
-    from beamdyn.common.results.result import Result
-
 
 # Steady-state response -------------------------------------------------------------------------------
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
-from cyclopts import App, Parameter
+from cyclopts import Parameter
 
 import beamdyn as bd
 from beamdyn.analyses.about_campbell import parse_operation, parse_orders, parse_top
@@ -18,12 +18,13 @@ from beamdyn.analyses.results.of_studies import crossings_columns
 from beamdyn.cli.decks import read_with
 from beamdyn.common.edge.command_options import NO_FILES, Flag, Outputs, write_table
 from beamdyn.common.edge.config import read
-from beamdyn.common.edge.exit_codes import examples
 from beamdyn.common.edge.html_report import Question
 from beamdyn.files.scenes import load_scene
 
 if TYPE_CHECKING:
     from beamdyn.scene.scene import Scene
+
+EXAMPLE = 'beamdyn campbell examples/twisted_blade.toml --top-speed "15 rpm" --modes 2'
 
 SceneFiles = Annotated[tuple[Path, ...], Parameter(name="FILE", negative=())]
 OfAll = Annotated[
@@ -161,9 +162,3 @@ def _label(inputs: Sequence[_BladeFile], labels: str | None, physics: Physics) -
     scenes = (given.scene for given in inputs)
     chosen = (scene if physics is None else replace(scene, physics=physics) for scene in scenes)
     return dict(zip(names, chosen, strict=True))
-
-
-def add(app: App) -> None:
-    """Add the command `campbell` to a command line."""
-    example = 'beamdyn campbell examples/twisted_blade.toml --top-speed "15 rpm" --modes 2'
-    app.command(campbell, help_epilogue=examples(example))

@@ -56,7 +56,9 @@ A scene is a TOML file with units; `beamdyn COMMAND --help` lists the options of
             each = analyses((name,))[name]
             app.command(each.command(), name=name, help_epilogue=exit_codes.examples(*each.examples))
         else:
-            import_module(f"beamdyn.cli.{_OTHERS[name][0]}").add(app)
+            module, function = _OTHERS[name]
+            made = vars(import_module(f"beamdyn.cli.{module}"))
+            app.command(made[function], name=name, help_epilogue=exit_codes.examples(made["EXAMPLE"]))
     if not command:
         add_command(app, make_program, port=8080, about=_SCREENS)
         exit_codes.add_completion(app)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-from cyclopts import App, Parameter
+from cyclopts import Parameter
 
 from beamdyn.analyses.options import Text
 from beamdyn.analyses.values import parse_quantity, parse_speed
 from beamdyn.common.edge.command_options import Flag, Outputs
 from beamdyn.common.edge.console import show, table
-from beamdyn.common.edge.exit_codes import examples, warn
+from beamdyn.common.edge.exit_codes import warn
 from beamdyn.common.results.files import check_writable, write_text
-from beamdyn.files.decks.deck import read_deck
+from beamdyn.files.decks.deck import Deck, read_deck
 from beamdyn.files.decks.deck_tables import deck_tables
 
-if TYPE_CHECKING:
-    from beamdyn.files.decks.deck import Deck
+EXAMPLE = 'beamdyn import examples/blade_stations.csv --length "40 m" --hub-radius "1 m"'
 
 DeckFile = Annotated[Path, Parameter(name="FILE")]
 Output = Annotated[Path | None, Parameter(name=("--output", "-o"))]
@@ -88,9 +87,3 @@ def read_with(file: Path, length: str | None, hub_radius: str | None) -> Deck:
         for name, text in {"length": length, "hub_radius": hub_radius}.items()
     }
     return read_deck(file, **given)
-
-
-def add(app: App) -> None:
-    """Add the command `import` to a command line."""
-    example = 'beamdyn import examples/blade_stations.csv --length "40 m" --hub-radius "1 m"'
-    app.command(import_deck, name="import", help_epilogue=examples(example))

@@ -5,12 +5,11 @@ from __future__ import annotations
 from functools import partial
 from pathlib import Path
 
-from cyclopts import App
-
 from beamdyn.common.edge.command_options import Flag, SomeFolder
-from beamdyn.common.edge.exit_codes import examples
 from beamdyn.common.edge.reports import report_verdicts
 from beamdyn.reproduce import compare_all
+
+EXAMPLE = "beamdyn reproduce --output pictures"
 
 
 def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = False) -> None:
@@ -26,8 +25,3 @@ def reproduce(*, output: SomeFolder = Path("beamdyn-reproduce"), tables: Flag = 
     screen = report_verdicts(partial(compare_all, tables=tables), output)
     if not tables:
         screen.print("beamdyn reproduce --tables compares with the tables of other sources, too.")
-
-
-def add(app: App) -> None:
-    """Add the command `reproduce` to a command line."""
-    app.command(reproduce, help_epilogue=examples("beamdyn reproduce --output pictures"))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from functools import cache, cached_property
-from typing import NamedTuple, Protocol, Self
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -180,15 +180,17 @@ class Sampler:
 class SampledSpace(FieldsOnly, ABC):
     """Base class of function spaces that are sampled at the points of a Gauss rule on cells."""
 
-    @cached_property
-    @abstractmethod
-    def points(self) -> np.ndarray:
-        """Points x/L of the Gauss rule on [0, 1]."""
+    spaces: Any  # the spaces that it belongs to, whose `quadrature` is the Gauss rule
 
     @cached_property
-    @abstractmethod
+    def points(self) -> np.ndarray:
+        """Points x/L of the Gauss rule on [0, 1]."""
+        return self.spaces.quadrature.xi
+
+    @cached_property
     def rule(self) -> np.ndarray:
         """Weights of the Gauss rule."""
+        return self.spaces.quadrature.weights
 
     @cached_property
     @abstractmethod

@@ -81,16 +81,6 @@ class NearbySpace(SampledSpace):
     given: MomentSpace
 
     @cached_property
-    def points(self) -> np.ndarray:
-        """Points x/L of the Gauss rule on [0, 1]."""
-        return self.spaces.quadrature.xi
-
-    @cached_property
-    def rule(self) -> np.ndarray:
-        """Weights of the Gauss rule."""
-        return self.spaces.quadrature.weights
-
-    @cached_property
     def samples(self) -> list[np.ndarray]:
         """Values of the functions and of each derivative at the Gauss points, (functions, points) each."""
         orders = range(self.given.conditions.derivatives + 1)

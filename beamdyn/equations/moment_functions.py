@@ -333,16 +333,6 @@ class MomentSpace(SampledSpace):
     spaces: MomentSpaces
     conditions: RootConditions
 
-    @cached_property
-    def points(self) -> np.ndarray:
-        """Points x/L of the Gauss rule on [0, 1]."""
-        return self.spaces.quadrature.xi
-
-    @cached_property
-    def rule(self) -> np.ndarray:
-        """Weights of the Gauss rule."""
-        return self.spaces.quadrature.weights
-
     def weights(self, weight: Profile) -> np.ndarray:
         """Multiply the weights of the Gauss rule by a property of the beam."""
         return self.rule * self.spaces.at_points(weight)

@@ -13,7 +13,7 @@ from numpy.polynomial import legendre
 from beamdyn.common.numerics import gauss_rule, legendre_series
 from beamdyn.equations.mass import axial_tension, outboard_moments
 from beamdyn.scene.beam import Beam, TipMass
-from beamdyn.scene.profile import Profile
+from beamdyn.scene.profile import Profile, mean
 
 _EPS = float(np.finfo(float).eps)
 _DEGREES = (0, 8, 16, 32, 64, 128)
@@ -37,13 +37,9 @@ def bound_traces(beam: Beam, flexibility: Profile) -> np.ndarray:
     # Lever arm from s to the tip body's centre of mass, 1 - s + eps.
     arm = Profile((0.0, 1.0), ((0.5 + tip.offset, -0.5),))
     loads = (n_b.outboard_integral(), n_a.outboard_integral(), moment)
-    tension_b, tension_a, inertia = (_integral(flexibility * load) for load in loads)
-    inertia += tip.mass * _integral(flexibility * (arm * arm))
-    return np.array([tension_b, tension_a, inertia, _integral(flexibility)])
-
-
-def _integral(profile: Profile) -> float:
-    return float(np.diff(profile.breakpoints) @ profile.series[0])
+    tension_b, tension_a, inertia = (mean(flexibility * load) for load in loads)
+    inertia += tip.mass * mean(flexibility * (arm * arm))
+    return np.array([tension_b, tension_a, inertia, mean(flexibility)])
 
 
 def bound_on_cells(profile: Profile, ends: np.ndarray) -> np.ndarray:

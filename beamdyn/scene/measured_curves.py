@@ -52,7 +52,7 @@ class MeasuredCurves(ReadOnlyArrays):
         return np.asarray(getattr(self, "rounding")).reshape(self.columns.shape)  # noqa: B009
 
     def _check_columns(self, given: Any, names: Sequence[str], units: dict[str, str]) -> None:
-        """Check values, their names and uncertainties, and store them as arrays."""
+        """Check values, their names and uncertainties, store them, and make all arrays read-only."""
         names = checks.several("names", names, str, "give names in a list")
         if not names:
             raise InvalidValue("names", names, "it is empty", f"give {', '.join(units)}")
@@ -68,6 +68,7 @@ class MeasuredCurves(ReadOnlyArrays):
         checks.kind("source", getattr(self, "source", ""), str)
         checks.set_fields(self, value=values, names=names)
         set_doubts(self, values, "")
+        super().__post_init__()
 
 
 @dataclass(frozen=True)
@@ -123,7 +124,6 @@ class MeasuredHistory(MeasuredCurves):
         )
         checks.set_fields(self, time=time)
         self._check_columns(self.value, self.names, self.units)
-        super().__post_init__()
 
 
 @dataclass(frozen=True)
@@ -176,7 +176,6 @@ class MeasuredPeaks(MeasuredCurves):
             raise InvalidValue("window", self.window, "it has a beginning and an end", "give two times", "s")
         checks.set_fields(self, speed=checks.ascending("speed", self.speed), window=window)
         self._check_columns(self.value, self.names, self.units)
-        super().__post_init__()
 
 
 @dataclass(frozen=True)
@@ -237,7 +236,6 @@ class MeasuredLoads(MeasuredCurves):
         )
         checks.set_fields(self, position=position, speed=_speed(self.speed))
         self._check_columns(self.value, self.names, self.units)
-        super().__post_init__()
 
 
 @dataclass(frozen=True)

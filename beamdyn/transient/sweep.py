@@ -38,13 +38,13 @@ from beamdyn.scene.scene import Scene, SceneResult, check_scene
 from beamdyn.scene.validity import list_speeds, warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.chunks import DONE, CaseResult, SweepRequest, solve_chunk
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
-from beamdyn.transient.simulate import simulate
-from beamdyn.transient.smallest_basis import (
+from beamdyn.transient.simulate import (
     end_speeds,
     first_basis,
     largest_mode_error,
     list_samples,
     run_samples,
+    simulate,
     with_basis_of,
 )
 from beamdyn.transient.step_size import TOLERANCES

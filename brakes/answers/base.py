@@ -243,6 +243,8 @@ class BrakeType(ABC, Generic[FileModel]):
         One sentence on which tables or keys must be given together in the file; "" if that is evident.
     key_results : tuple of (words, name)
         Outputs at the top of the screen: their words there, and their names.
+    sketches : callable
+        Makes drawings that explain the symbols of the input form, whatever its entries are.
     """
 
     name: ClassVar[str]
@@ -259,6 +261,7 @@ class BrakeType(ABC, Generic[FileModel]):
     most_cases: int = MOST_ONE_BY_ONE
     together: str = ""
     key_results: tuple[tuple[str, str], ...] = ()
+    sketches: Callable[[], Rows] = staticmethod(tuple)
 
     def headline(self, answer: Answer) -> Iterator[KeyResult]:
         """Yield the results at the top of the screen: the key results, or else the first outputs."""
@@ -283,7 +286,7 @@ class BrakeType(ABC, Generic[FileModel]):
 
     def sketch(self, entries: Mapping[str, str]) -> Rows:
         """Make drawings that explain the symbols of the input form, for the entries given in it."""
-        return ()
+        return self.sketches()
 
     @abstractmethod
     def solve(self, design: FileModel) -> Answer:

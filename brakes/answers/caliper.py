@@ -33,9 +33,9 @@ from brakes.answers.doubts import hangs_on_friction
 from brakes.answers.mechanism import MechanismAnswer, mechanism_outputs
 from brakes.calipers import NAMED, Caliper, CaliperStroke, PadWear, PivotFriction, Stance, StoppingDistance
 from brakes.common.limits import passes, verdict
-from brakes.config.caliper import CaliperInput
 from brakes.config.mechanism import (
     PARTS,
+    CaliperInput,
     MechanismInput,
     idle_inputs,
     inputs_of_tables,

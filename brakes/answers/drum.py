@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -108,14 +108,11 @@ class DrumType(RubbingType[DrumInput]):
     model = DrumInput
     sections = needs = ("brake", "shoe", "second_shoe", "load", "heat")
     example_sweep = "brake.friction=0.1:0.6:26"
+    sketches = staticmethod(drum_sketch)
 
     def solve(self, design: DrumInput) -> Answer:
         """Compute the forces in the brake, and its heating."""
         return DrumAnswer(design, design.solve()).stop_again()
-
-    def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the input form."""
-        return drum_sketch()
 
     def outputs(self, design: DrumInput) -> Sequence[Output]:
         """Describe the outputs of the brake, of its shoes and of repeated stops."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from typing import Any
@@ -356,11 +356,6 @@ class ForkliftType(ArrayBrakeType[ForkliftInput]):
     sections = needs = ("truck", "stop", "brake", "levers", "forces", "pedal", "line", "drums", "heat")
     example_sweep = "stop.speed=10:30:21 km/h"
     stages: tuple[StageName, ...] = ()
-    sketches: Callable[[], Rows] = staticmethod(tuple)
-
-    def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the input form."""
-        return self.sketches()
 
     def solve(self, design: ForkliftInput) -> ForkliftAnswer:
         """Solve the stages; see `solve_stages`."""

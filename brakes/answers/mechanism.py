@@ -19,8 +19,7 @@ from beamdyn.common.results.pictures import Figure
 from beamdyn.common.results.result import plain
 from brakes.answers import planar
 from brakes.answers.tables import SCALES
-from brakes.config.caliper import CaliperInput
-from brakes.config.mechanism import MechanismInput
+from brakes.config.mechanism import CaliperInput, MechanismInput
 from brakes.drawings import mechanism as drawings
 from brakes.planar import Equilibrium, Mechanism, assemble, solve, solve_with_friction, stroke
 from brakes.planar.system import join_names

@@ -22,8 +22,7 @@ from beamdyn.common.results.result import Result, plain
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.words import Words
 from brakes.answers.base import Answer
-from brakes.config.caliper import CaliperInput
-from brakes.config.mechanism import MechanismInput
+from brakes.config.mechanism import CaliperInput, MechanismInput
 from brakes.drawings.mechanism import animate, free_body_diagrams
 from brakes.drawings.mechanism_parts import members
 from brakes.planar import Equilibrium, FrictionalEquilibrium, Load, Mechanism, Position, Stroke

@@ -239,6 +239,7 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
     together = "Give [truck] or [vehicle]; [lever], [cable] or [line], and [brakes] go together."
     sections = needs = ("truck", "vehicle", "road", "braking", "stop", "lever", "cable", "line", "brakes")
     example_sweep = "road.slope=1:35:35 deg"
+    sketches = staticmethod(vehicle_sketch)
     sweep_results = "holds_front,holds_rear,braking_force_front,braking_force_rear"
     key_results = (
         ("largest slope, front axle downhill", "largest_slope_front"),
@@ -256,10 +257,6 @@ class ParkingType(ArrayBrakeType[VehicleInput]):
                 axle: _solve_way(design, axle, force, pulled, gain) for axle in _AXLES
             }
         return VehicleAnswer(design, ways, pulled)
-
-    def sketch(self, entries: Mapping[str, str]) -> Rows:
-        """Make drawings that explain the symbols of the input form."""
-        return vehicle_sketch()
 
     def outputs(self, design: VehicleInput) -> Sequence[Output]:
         """Describe the outputs of both directions, and of the lever."""

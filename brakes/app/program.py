@@ -21,8 +21,7 @@ from brakes.answers.forklift import ForkliftAnswer, stage_outputs
 from brakes.answers.tables import list_outputs
 from brakes.app.bases import base
 from brakes.app.mechanism_lists import LISTS
-from brakes.config.caliper import CaliperInput
-from brakes.config.mechanism import MechanismInput, parse_mechanism
+from brakes.config.mechanism import CaliperInput, MechanismInput, parse_mechanism
 from brakes.reproduce.forklift_as_printed import answer_as_printed
 
 HEADINGS = {

@@ -1,7 +1,14 @@
 """From pedal or lever to wheels: actuation by line or cable, braking force, fading and heat of a stop."""
 
-from brakes.chain.actuation import Actuation, actuate, force_for, ratio_for
-from brakes.chain.braked import BrakedStop, WheelBrakes, brake_from_pedal
+from brakes.chain.braked import (
+    Actuation,
+    BrakedStop,
+    WheelBrakes,
+    actuate,
+    brake_from_pedal,
+    force_for,
+    ratio_for,
+)
 from brakes.chain.heat import Drums, Heat, fade_of_stops, heat_of_stop
 from brakes.chain.lines import BrakeCable, HydraulicLine
 from brakes.chain.pedal import Pedal

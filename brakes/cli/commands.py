@@ -218,15 +218,16 @@ def _answer_many(
     """
     import numpy as np
 
-    from brakes.answers.finding import find_in_file
-    from brakes.answers.spread import spread_of_brake
+    from beamdyn.common.parallel.tasks import TaskRunner
+    from brakes.answers.finding import find_in_file, spread_of_brake
 
     if asked.finding.find and asked.finding.so_that:
         made = find_in_file(brake, tables, file, asked.finding.find, asked.finding.so_that)
         return made, made.warnings, "".join(made.refusals)
     varying, spreading = asked.varying, asked.spreading
     with at_work("designs") as progress:
-        run = varying.runner("brakes study", (__version__, np.__version__), progress)
+        versions = __version__, np.__version__
+        run = TaskRunner(varying.workers, None, varying.store, "brakes study", versions, progress)
         if spreading.spread:
             how = spreading.samples, spreading.seed, run
             made = spread_of_brake(brake, tables, file, spreading.spread, asked.what, *how)

@@ -73,6 +73,11 @@ def force_size(vector: np.ndarray) -> str:
     return f"{size / 1e3:.3g} kN" if size >= 1e3 else f"{size:.3g} N"
 
 
+def on_rim(radius: float, alpha: np.ndarray) -> np.ndarray:
+    """Return points on a circle at angles from straight down [rad], positive to the right: shape (..., 2)."""
+    return radius * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
+
+
 def rotation(radius: float, half: float, sense: float) -> list[DrawnShape]:
     """Make the arrow of a rotation about the origin, above it; it points clockwise for a sense of 1.
 

@@ -20,7 +20,7 @@ from beamdyn.common.drawing.shapes import (
     Symbol,
     arc,
 )
-from brakes.drawings.arrows import ForceArrows
+from brakes.drawings.arrows import ForceArrows, on_rim
 from brakes.drawings.machine import FRICTION_SHOWN, LIMIT_SHOWN, beside_charts, over_friction
 from brakes.drum import BrakeResult, DrumBrake, ShoeResult, brake_torque
 
@@ -80,7 +80,7 @@ def drawing_of(result: BrakeResult) -> Drawing:
 def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str, bare: bool) -> None:
     """Add a shoe with lining, pin and, unless `bare`, forces; `placed` transforms the shoe's axes."""
     r, shoe = float(s.shoe.drum_radius), s.shoe
-    rim = _on_rim(r, np.linspace(*shoe.lining, 80)) @ placed
+    rim = on_rim(r, np.linspace(*shoe.lining, 80)) @ placed
     pin = np.array(shoe.pivot, dtype=float) @ placed
     lever = np.array([0.55 * r, float(shoe.force_arm)]) @ placed
     middle = r * np.array([0.36, 0.3]) @ placed
@@ -101,20 +101,10 @@ def _draw_shoe(arrows: ForceArrows, s: ShoeResult, placed: np.ndarray, name: str
         arrows.labels.append(Label(text, middle))
     arrows.shapes += [Symbol("pin", pin, "reaction", 8.0), Symbol("dot", lever, "load", 3.0)]
     if bare and s.locked:
-        at = (_on_rim(r, np.array([np.mean(shoe.lining)])) @ placed)[0]
+        at = (on_rim(r, np.array([np.mean(shoe.lining)])) @ placed)[0]
         arrows.shapes.append(Symbol("cross", at, "inside", 16.0))
         text = f"{name}: locks from\nfriction {float(s.locking_friction):.3g} on"
         arrows.labels.append(Label(text, middle, "inside", priority=4))
-
-
-def _on_rim(r: float, alpha: np.ndarray) -> np.ndarray:
-    """Compute points (rows of x, y) on the drum at angles from straight down [rad]."""
-    return r * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
-
-
-def pressures(ax: Axes, result: BrakeResult) -> Axes:
-    """Draw the pressure over the linings in matplotlib axes; for a single case."""
-    return plot_chart(ax, pressure_chart(result))
 
 
 def pressure_chart(result: BrakeResult) -> Chart:

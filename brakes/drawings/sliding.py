@@ -7,7 +7,7 @@ import numpy as np
 from beamdyn.common.drawing.layout import Rows
 from beamdyn.common.drawing.shapes import Disc, Drawing, DrawnShape, Label, Outline, Symbol
 from beamdyn.common.drawing.sketch import Sketch
-from brakes.drawings.arrows import ForceArrows, rotation
+from brakes.drawings.arrows import ForceArrows, on_rim, rotation
 from brakes.drawings.sketches import width_sketch
 from brakes.machines import MachineResult, Sliding
 
@@ -32,7 +32,7 @@ def draw_sliding(result: MachineResult) -> Drawing:
         _add_shoe(arrows.shapes, brake, side)
         if not result.locked:
             at, lean = brake.pressure_on(i, _along(brake), float(result.friction), result.reverse), 0.93 * r
-            arrows.shapes.append(Outline(_points(lean, _along(brake)[at > 0]) * side, "normal", 5.0))
+            arrows.shapes.append(Outline(on_rim(lean, _along(brake)[at > 0]) * side, "normal", 5.0))
             _add_forces(arrows, brake, lining.reactions, float(result.force), side, f"_{i + 1}")
     if result.locked:
         arrows.labels.append(Label("a shoe grips by itself", (0.0, 0.4 * r), "inside", priority=4))
@@ -48,11 +48,6 @@ def _along(brake: Sliding) -> np.ndarray:
     return np.linspace(float(brake.lining_start), float(brake.lining_end), 81)
 
 
-def _points(radius: float, alpha: np.ndarray) -> np.ndarray:
-    """Compute points on a circle at angles from straight down [rad], on the right side."""
-    return radius * np.stack([np.sin(alpha), -np.cos(alpha)], axis=-1)
-
-
 def _add_shoe(shapes: list[DrawnShape], brake: Sliding, side: np.ndarray) -> None:
     """Add a shoe with lining and abutment to the shapes; `side` has the signs of x and y on its side."""
     r, alpha = float(brake.drum_radius), _along(brake)
@@ -60,8 +55,8 @@ def _add_shoe(shapes: list[DrawnShape], brake: Sliding, side: np.ndarray) -> Non
     head = np.array([foot[0], float(brake.force_arm)])
     face = np.array([-np.sin(float(brake.abutment_angle)), np.cos(float(brake.abutment_angle))]) * 0.12 * r
     shapes += [
-        Outline(_points(0.97 * r, alpha) * side, "support", 4.0),
-        Outline(np.vstack([foot, _points(0.86 * r, alpha), head]) * side, "body", 3.0),
+        Outline(on_rim(0.97 * r, alpha) * side, "support", 4.0),
+        Outline(np.vstack([foot, on_rim(0.86 * r, alpha), head]) * side, "body", 3.0),
         Outline(np.array([foot - face, foot + face]) * side, "ground", 3.0),
     ]
 
@@ -92,7 +87,7 @@ def sliding_sketch() -> Rows:
     s.height("a", (0.0, 0.0), (0.15, 0.8), -1.25)
     s.length("r", (0.0, 0.0), (-np.cos(0.9), np.sin(0.9)), (-0.3, 1.0))
     for symbol, angle, size in (("alpha1", 35.0, 0.4), ("alpha2", 135.0, 0.65)):
-        s.dashed((0, 0), _points(1.0, np.radians(np.array([angle])))[0])
+        s.dashed((0, 0), on_rim(1.0, np.radians(np.array([angle])))[0])
         s.angle(symbol, (0, 0), size, -np.pi / 2, -np.pi / 2 + np.radians(angle))
     s.arrow("P", (-0.45, 0.8), (0.1, 0.8))
     s.arrow("psi", (-0.4, -0.92), (0.1, -0.77))

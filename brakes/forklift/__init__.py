@@ -3,7 +3,7 @@
 After Yoo et al. 1997, with the mechanics corrected; `brakes.reproduce` has the paper's own version.
 """
 
-from brakes.forklift.duo_servo import BENDIX_12_5, DuoServo, ShoeMotion
+from brakes.forklift.duo_servo import BENDIX_12_5, DuoServo, Levers, ShoeMotion
 from brakes.forklift.forces import InternalForces, equilibrium_equations, internal_forces
 from brakes.forklift.kinematics import (
     Event,
@@ -14,7 +14,6 @@ from brakes.forklift.kinematics import (
     constraint_rank,
     follow_shoes,
 )
-from brakes.forklift.levers import Levers
 from brakes.forklift.procedure import Procedure, brake_procedure
 from brakes.vehicle import Stop, StopConditions, Truck, stop
 

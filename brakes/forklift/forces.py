@@ -36,7 +36,7 @@ from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import error_at_most, spanned, warned
 from beamdyn.common.results.result import Result
 from brakes.common.locking import LEAST_MARGIN
-from brakes.forklift.levers import HasLevers, Levers
+from brakes.forklift.duo_servo import HasLevers, Levers
 from brakes.vehicle.axles import ROUNDING
 
 _STEPS = 200  # largest number of iterations for the trailing shoe's share; bisection needs about 60

@@ -25,9 +25,8 @@ from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
-from brakes.vehicle.axles import Axle, Braked, Vehicle, other
+from brakes.vehicle.axles import Axle, Braked, Truck, Vehicle, other
 from brakes.vehicle.stop import StopConditions
-from brakes.vehicle.truck import Truck
 
 MOST_FRICTION = 2.0  # largest friction that `Road` and `StopConditions` accept
 

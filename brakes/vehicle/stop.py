@@ -37,9 +37,8 @@ from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
 from brakes.common.locking import LEAST_MARGIN
-from brakes.vehicle.axles import ACUTE, ROUNDING
+from brakes.vehicle.axles import ACUTE, ROUNDING, Truck
 from brakes.vehicle.rise import to_rest
-from brakes.vehicle.truck import Truck
 
 STANDARD_GRAVITY = 9.806  # acceleration of gravity in Yoo et al. (1997) [m/s2]
 STEEPEST = np.pi / 4  # steepest slope that a road can have [rad]

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from rich.console import Group
 
-from beamdyn.common.screens.compared_designs import with_other_curves
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import OpenDocument
+from beamdyn.common.screens.panels import with_other_curves
 from brakes.app.program import BRAKES
 
 SCREENS = {screen.name: (document, screen) for document in BRAKES.documents for screen in document.screens}

@@ -18,18 +18,18 @@ from beamdyn.common.edge.config import ConfigError
 from beamdyn.common.edge.console import table
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.browser_memory import LinkedDesign, named_designs, read_typed, refused_name
-from beamdyn.common.screens.compared_designs import (
+from beamdyn.common.screens.examples import examples_of
+from beamdyn.common.screens.handles import draw_sheet
+from beamdyn.common.screens.open_document import History, OpenDocument, OtherDesign
+from beamdyn.common.screens.panels import (
     Difference,
     differences_html,
     headline_html,
+    headline_of,
     input_differences,
     result_differences,
     with_ghost,
 )
-from beamdyn.common.screens.examples import examples_of
-from beamdyn.common.screens.handles import draw_sheet
-from beamdyn.common.screens.open_document import History, OpenDocument, OtherDesign
-from beamdyn.common.screens.panels import headline_of
 from brakes.app.program import BRAKES
 
 VEHICLE = BRAKES.documents[0]

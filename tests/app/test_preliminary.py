@@ -20,7 +20,7 @@ from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.form_entries import tables_of
 from beamdyn.common.screens.open_document import ShownAnswer
 from beamdyn.studies.beside_data.frequency_comparison import FrequencyComparison
-from beamdyn.studies.beside_data.identification import Identification
+from beamdyn.studies.beside_data.identify import Identification
 
 SCREENS = {screen.name: (document, screen) for document in BEAMDYN.documents for screen in document.screens}
 

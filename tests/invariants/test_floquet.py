@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import beamdyn as bd
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
+from beamdyn.studies.floquet.monodromy import PeriodicScenes
 from beamdyn.transient.system import ModalSystem
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -12,7 +12,7 @@ import pytest
 import beamdyn as bd
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.studies.floquet.exponents import Cocycle, largest_exponent
-from beamdyn.studies.floquet.periodic_scenes import check_periodic
+from beamdyn.studies.floquet.monodromy import check_periodic
 from beamdyn.transient.system import ModalSystem
 
 UNIT = bd.Beam.from_stiffness(1.0, 1.0, 1.0)  # time in units of sqrt(rho A L^4 / EI)

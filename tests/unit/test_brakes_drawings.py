@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from beamdyn.common.drawing.on_axes import figure_of
+from beamdyn.common.drawing.on_axes import figure_of, plot_chart
 from beamdyn.common.drawing.shapes import Outline, Symbol
 from beamdyn.common.plots.curves import curves, sweep_figure
 from brakes import drum, forklift, machines
 from brakes.drawings import mechanism_parts
 from brakes.drawings.arrows import ForceArrows
-from brakes.drawings.drum import brake_figure, drawing_of, factors, pressures
+from brakes.drawings.drum import brake_figure, drawing_of, factors, pressure_chart
 from brakes.drawings.drum import factor_chart as factors_of_drum
 from brakes.drawings.duo_servo import duo_servo, free_bodies, lining, moved
 from brakes.drawings.forklift import answer_drawings, distances, forces_over, truck
@@ -65,7 +65,7 @@ def test_both_shoes_of_a_duplex_brake_rub_the_same_way_round() -> None:
 
 def test_pressure_is_drawn_over_the_lining_only() -> None:
     found = drum.brake_torque(drum.simplex(SHOE), friction=0.35, force=1000.0)
-    for line, shoe in zip(pressures(axes(), found).lines, found.shoes, strict=True):
+    for line, shoe in zip(plot_chart(axes(), pressure_chart(found)).lines, found.shoes, strict=True):
         x, y = np.asarray(line.get_xdata()), np.asarray(line.get_ydata())
         assert (x.min(), x.max()) == pytest.approx((30.0, 110.0), rel=1e-12)
         assert y.max() == pytest.approx(1e-6 * shoe.peak_pressure, rel=1e-3)

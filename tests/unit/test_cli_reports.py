@@ -20,8 +20,7 @@ from beamdyn import __version__
 from beamdyn.common.edge.exit_codes import BAD_INPUT, DONE, NO_ANSWER
 from beamdyn.common.edge.html_report import Question, report_page
 from brakes.calipers import NAMED
-from brakes.config.caliper import named
-from brakes.config.mechanism import parse_mechanism
+from brakes.config.mechanism import named, parse_mechanism
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "examples"

@@ -12,9 +12,8 @@ from scipy.linalg import block_diag
 import beamdyn as bd
 from beamdyn.scene.motion.base import check_consistent
 from beamdyn.studies.floquet.interpolation import interpolate_on_grid
-from beamdyn.studies.floquet.monodromy import Monodromy, period_of
+from beamdyn.studies.floquet.monodromy import Monodromy, PeriodicScenes, period_of
 from beamdyn.studies.floquet.multipliers import multipliers_of
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 
 STRIP = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
 PULSATING = bd.PulsatingRotation(50.0, 0.1, 20.0)

@@ -7,7 +7,7 @@ import pytest
 from beamdyn.app.program import BEAMDYN
 from beamdyn.common.drawing.layout import lay_out
 from beamdyn.common.drawing.on_axes import figure_of
-from beamdyn.common.drawing.sketch import Sketch, sketch_paper, symbols_in
+from beamdyn.common.drawing.sketch import Sketch, sketch_paper
 from beamdyn.common.drawing.text_width import symbol_html, typeset
 from beamdyn.common.screens.form_entries import label, label_html, table_of
 from brakes.app.program import BRAKES
@@ -30,7 +30,8 @@ NOT_DRAWN = {"beam.twist", "beam.sweep", "beam.prebend"} | OFFSETS | LAYERS | OF
 @pytest.mark.parametrize("document, screen, entries", SCREENS)
 def test_a_sketch_has_the_symbols_of_its_form_and_no_others(document, screen, entries):
     inputs = document.inputs(entries)
-    drawn = symbols_in(screen.sketch(entries))
+    rows = screen.sketch(entries)
+    drawn = {label.symbol for row in rows for drawing in row for label in drawing.labels if label.symbol}
     said = {word.strip(",;") for entry in inputs for word in entry.quantity.meaning.split()}
     assert drawn <= {typeset(known) for known in {entry.quantity.symbol for entry in inputs} | said}
     on_form = [e for e in inputs if table_of(e.path) in screen.sections and e.quantity.symbol]

@@ -351,7 +351,7 @@ def test_a_tolerance_that_cannot_be_met_does_not_make_the_answer_worse(
 ) -> None:
     """More accurate steps leave less work for modes; a small limit of the work shows that in a second."""
     for limit in ("_MOST_WORK", "_SLOW_WORK"):
-        monkeypatch.setattr(importlib.import_module("beamdyn.transient.smallest_basis"), limit, 1e5)
+        monkeypatch.setattr(importlib.import_module("beamdyn.transient.simulate"), limit, 1e5)
     sudden = replace(HARVESTER, motion=bd.SpinUp(50.0, duration=1e-4), damping_ratio=0.005)
     usual, tight = (bd.simulate(sudden, 0.05, tolerance=tolerance) for tolerance in (1e-5, 1e-9))
     assert tight.mode_error <= usual.mode_error and "not reached" in " ".join(tight.warnings)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 from rich.console import Group
@@ -15,14 +15,12 @@ from beamdyn.common.edge.console import set_apart, table, table_of
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.edge.views import View
 from beamdyn.common.results.columns import Column, Columns, columns_of_rows, evenly_spread
+from beamdyn.common.results.result import Result
 from beamdyn.common.results.statements import OUTSIDE, of_kind
 from beamdyn.common.words import lower_bound, supported, supported_or_range, upper_bound
 from beamdyn.equations.effects import first_drawn, words_of_directions
 from beamdyn.modes.modal.model import BENDING
 from beamdyn.modes.model_error.left_out_effects import where_worst
-
-if TYPE_CHECKING:
-    from beamdyn.common.results.result import Result
 
 Cell: TypeAlias = "str | Text"  # type of a table cell: plain or styled text
 # Largest number of evenly spaced rows of a printed table; rows of peaks and changes of status are added.

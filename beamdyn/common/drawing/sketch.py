@@ -112,11 +112,6 @@ def wall(middle: Point, half: Point, back: Point) -> list[DrawnShape]:
     return [Outline(ends, "ground", 2.4), *(Outline([tick, tick + behind], "ground", 0.9) for tick in ticks)]
 
 
-def symbols_in(rows: Rows) -> set[str]:
-    """Return the symbols that occur in drawings, in the notation of `typeset`."""
-    return {label.symbol for row in rows for drawing in row for label in drawing.labels if label.symbol}
-
-
 def sketch_paper(rows: Rows) -> Paper:
     """Choose the sheet size for sketches: the width of a form, and only the height that is needed."""
     return Paper(WIDTH, tuple(_height(row, WIDTH / len(row)) for row in rows))

@@ -21,7 +21,6 @@ from beamdyn.common.spreading import DEFAULT_SAMPLES
 
 if TYPE_CHECKING:
     from beamdyn.common.edge.html_report import Report
-    from beamdyn.common.parallel.tasks import TaskRunner
     from beamdyn.common.results.result import Result
 
 Flag = Annotated[bool, Parameter(negative="")]
@@ -268,15 +267,6 @@ class VaryOptions:
         for name in given_options(self):
             if not self.vary:
                 raise ValueError(f"--{name} goes with {OPTION}: without {OPTION} there is one design only")
-
-    def runner(self, kind: str, versions: tuple[str, ...], progress: Callable[[int, int], Any]) -> TaskRunner:
-        """Return a `TaskRunner` that computes designs in `workers` processes, and stores results in `store`.
-
-        `kind` names the kind of results; `versions` are those of the programs that affect their last bits.
-        """
-        from beamdyn.common.parallel.tasks import TaskRunner
-
-        return TaskRunner(self.workers, None, self.store, kind, versions, progress)
 
 
 NOTHING_VARIED = VaryOptions()

@@ -315,7 +315,7 @@ def _draw_map(ax: Axes, inputs: Sequence[MapInput], answer: MapAnswer) -> None:
     lacking = ~np.isfinite(z)
     if lacking.any():
         _hatch(ax, x, y, lacking)
-        _name_regions(ax, labels, x, y, lacking, why)
+        _name_regions(labels, x, y, lacking, why)
     for name, other in answer.meets.items():
         _draw_meeting(ax, labels, x, y, z - other[sort].T, name)
     _draw_levels(ax, labels, x, y, z)
@@ -412,7 +412,7 @@ def _hatch(ax: Axes, x: np.ndarray, y: np.ndarray, lacking: np.ndarray) -> None:
 
 
 def _name_regions(
-    ax: Axes, labels: PlacedLabels, x: np.ndarray, y: np.ndarray, lacking: np.ndarray, why: np.ndarray
+    labels: PlacedLabels, x: np.ndarray, y: np.ndarray, lacking: np.ndarray, why: np.ndarray
 ) -> None:
     """Write the reason at the centre of each region without results."""
     for name in np.unique(why[lacking]).tolist():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +25,7 @@ def plot_locus(
     labels: Sequence[str] | None = None,
     critical_speed: float | None = None,
     units: DisplayUnits = SI_UNITS,
+    quantity: str = "natural frequency [Hz]",
 ) -> Axes:
     """Draw natural frequencies over speed, one line per mode.
 
@@ -41,39 +43,24 @@ def plot_locus(
         Speed [rad/s] to mark, as `mark_critical` does.
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
+    quantity : str, optional
+        What is drawn, as the label of the axis says it.
 
     Returns
     -------
     Axes
     """
-    return _plot_over_speed(speeds, frequency, "natural frequency [Hz]", ax, labels, critical_speed, units)
+    frequency, speeds = np.asarray(frequency), units.speed_unit().of(np.asarray(speeds))
+    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), quantity)
+    axes_and_lines.draw_lines(ax, speeds, frequency.T, labels or _number_modes(frequency.shape[1]))
+    # Limits are set even if all values are nan.
+    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
+    return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
 
 
-def plot_growth(
-    speeds: np.ndarray,
-    growth_rate: np.ndarray,
-    ax: Axes | None = None,
-    labels: Sequence[str] | None = None,
-    critical_speed: float | None = None,
-    units: DisplayUnits = SI_UNITS,
-) -> Axes:
-    """Draw growth rates of modes over speed, one line per mode, in the colours of `plot_locus`.
-
-    Frequencies do not show whether a mode grows: above the critical speed, draw this plot below the
-    frequencies.
-
-    Parameters
-    ----------
-    speeds, ax, labels, critical_speed, units
-        As for `plot_locus`.
-    growth_rate : ndarray, shape (speeds, modes)
-        Growth rates [1/s]: positive where a mode is unstable, negative where it is damped.
-
-    Returns
-    -------
-    Axes
-    """
-    return _plot_over_speed(speeds, growth_rate, "growth rate [1/s]", ax, labels, critical_speed, units)
+# Frequencies do not show whether a mode grows: above the critical speed, draw growth rates [1/s] below the
+# frequencies; they have the same colours.
+plot_growth = partial(plot_locus, quantity="growth rate [1/s]")
 
 
 def plot_loci_by_angle(
@@ -100,24 +87,7 @@ def plot_loci_by_angle(
     Axes
     """
     labels = [f"setting angle {angle:.10g}°" for angle in angles_deg]
-    return _plot_over_speed(speeds, np.asarray(frequency).T, "natural frequency [Hz]", ax, labels)
-
-
-def _plot_over_speed(
-    speeds: np.ndarray,
-    values: np.ndarray,
-    quantity: str,
-    ax: Axes | None,
-    labels: Sequence[str] | None,
-    critical_speed: float | None = None,
-    units: DisplayUnits = SI_UNITS,
-) -> Axes:
-    values, speeds = np.asarray(values), units.speed_unit().of(np.asarray(speeds))
-    ax = axes_and_lines.set_up_axes(ax, axes_and_lines.speed_label(units), quantity)
-    axes_and_lines.draw_lines(ax, speeds, values.T, labels or _number_modes(values.shape[1]))
-    # Limits are set even if all values are nan.
-    ax.update_datalim([(speeds[0], 0), (speeds[-1], 0)], updatey=False)
-    return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
+    return plot_locus(speeds, np.asarray(frequency).T, ax, labels)
 
 
 def mark_critical(

@@ -17,8 +17,8 @@ from beamdyn.common.edge.inputs import Input
 from beamdyn.common.edge.toml_text import toml_value
 from beamdyn.common.edge.units import quantity
 from beamdyn.common.inputs.checks import reason_of
-from beamdyn.common.screens.compared_designs import with_ghost
 from beamdyn.common.screens.form_entries import Entries, tables_of, units_for, usual_unit
+from beamdyn.common.screens.panels import with_ghost
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen
 

@@ -19,11 +19,9 @@ from beamdyn.common.edge.rendering import html
 from beamdyn.common.results.one_line import few_digits
 from beamdyn.common.screens import page_tasks
 from beamdyn.common.screens.chart_board import ChartBoard
-from beamdyn.common.screens.compared_designs import with_other_curves
 from beamdyn.common.screens.computations import BusyRow, LatestComputation, download
 from beamdyn.common.screens.controls import BranchChoice, Player
 from beamdyn.common.screens.draggable_drawing import DraggableDrawing
-from beamdyn.common.screens.find_panel import FindPanel
 from beamdyn.common.screens.form import Form
 from beamdyn.common.screens.form_entries import Entries, options_of
 from beamdyn.common.screens.handles import Place, Viewport, changed_texts, describe_place, draw_sheet
@@ -37,11 +35,12 @@ from beamdyn.common.screens.panels import (
     PicturePanel,
     SketchPanel,
     headline_of,
+    with_other_curves,
 )
 from beamdyn.common.screens.processes import RunsTasks, Task
 from beamdyn.common.screens.screen_parts import Handle
 from beamdyn.common.screens.screens import Screen
-from beamdyn.common.screens.sweep_panel import SweepPanel
+from beamdyn.common.screens.sweep_panel import FindPanel, SweepPanel
 
 _NOT_SHOWN = "The answer cannot be shown, for a reason that the program does not know: {!r}"
 _NO_FILE = "No file is made: the present inputs have no complete answer; the messages on the screen say why."

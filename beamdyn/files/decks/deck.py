@@ -4,24 +4,152 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from beamdyn.common.edge.config import ConfigError
-from beamdyn.common.edge.data_text import DataText, named_values, read_data
+from beamdyn.common.edge.data_text import CsvTable, DataText, named_number, named_values, read_data
+from beamdyn.common.edge.inputs import Quantity
 from beamdyn.common.inputs.checks import InvalidValue, moderate, not_negative, size
 from beamdyn.common.results.files import check_writable, write_text
 from beamdyn.common.results.one_line import counted, number
 from beamdyn.common.results.result import Result
-from beamdyn.files.decks import beamdyn_blade, bmodes, csv_table, elastodyn, openfast
+from beamdyn.files.decks import beamdyn_blade, bmodes, elastodyn
 from beamdyn.files.decks.audit import DeckAudit, ModePolynomial, audit, fit_mode_polynomials
-from beamdyn.files.decks.blade import Blade, IgnoredProperty
+from beamdyn.files.decks.blade import Blade, IgnoredProperty, ignore
+from beamdyn.files.decks.elastodyn import named_file
 from beamdyn.files.decks.scene_file import tables_of, text_of
-from beamdyn.files.scenes import scene_from_dict
+from beamdyn.files.scenes import RADIUS, read_station_file, scene_from_dict
 from beamdyn.scene.scene import Scene
+
+_STRUCTURAL_TWIST = ("StrcTwst", "str_tw")  # headings of other programs, whose twist has the opposite sign
+_MORE = {RADIUS: Quantity("m"), **dict.fromkeys(_STRUCTURAL_TWIST, Quantity("rad"))}
+_NEEDED = ("mass_per_length", "bending_stiffness")
+_SECTION = ("width", "thickness")
+
+
+# Blades in CSV tables --------------------------------------------------------------------------------------
+
+
+def is_csv(text: DataText) -> bool:
+    """Return whether a text is a table, by its suffix or units in brackets in the first non-comment line."""
+    first = next((line for n, line in enumerate(text.lines, 1) if not text.is_comment(n)), "")
+    return text.path.suffix.lower() in (".csv", ".tsv") or ("[" in first and any(c in first for c in ",;\t"))
+
+
+def read_csv_blade(text: DataText, table: CsvTable, length: float, hub_radius: float) -> Blade:
+    """Read a blade from a CSV table.
+
+    Parameters
+    ----------
+    text : DataText
+        Text of the file.
+    table : CsvTable
+        Its table.
+    length, hub_radius : float
+        Length of the blade and radius of the hub [m], if they do not follow from the table.
+
+    Raises
+    ------
+    ConfigError
+        If data are missing or invalid.
+    """
+    stations, length, hub_radius = _positions(table, length, hub_radius)
+    return Blade(
+        kind="CSV table",
+        title="",
+        sources=(text.path,),
+        length=length,
+        hub_radius=hub_radius,
+        stations=stations,
+        columns=_properties(table),
+        ignored=tuple(
+            entry
+            for column in table.columns
+            if not column.name
+            for entry in ignore(column.head, column.values, column.unit, "no property of a beam")
+        ),
+    )
+
+
+def _positions(table: CsvTable, length: float, hub_radius: float) -> tuple[np.ndarray, float, float]:
+    """Return stations x/L, the length, and the radius of the hub [m]."""
+    named, text = table.named(), table.text
+    if RADIUS in named:
+        r = np.array(named[RADIUS].values)
+        if r[0] < 0:
+            raise text.refusal(table.lines[0], f"expected r of 0 or more at the root, found {r[0]:g} m")
+        return _fractions(r - r[0], r[-1] - r[0]), float(r[-1] - r[0]), float(r[0])
+    name = "x" if "x" in named else "x/L"
+    x = np.array(named[name].values, dtype=float)
+    last = 1.0 if name == "x/L" else float(x[-1])
+    if x[0] != 0:
+        raise text.refusal(table.lines[0], f"expected {name} = 0, the root, found {x[0]:g}")
+    if x[-1] != last:
+        raise text.refusal(table.lines[-1], f"expected {name} = 1, the tip, found {x[-1]:g}")
+    return _fractions(x, last), (last if name == "x" else length), hub_radius
+
+
+def _fractions(x: np.ndarray, length: float) -> np.ndarray:
+    """Compute positions as fractions of the length, rounded like those in scene files."""
+    return np.array([round(float(each) / length, 14) for each in x])
+
+
+def _properties(table: CsvTable) -> dict[str, np.ndarray]:
+    named, text = table.named(), table.text
+    if given := [named[name].head for name in _SECTION if name in named]:
+        said = f"expected columns of stiffness, found {given[0]}; a scene may name this file as beam.stations"
+        raise text.refusal(table.head_line, said)
+    if missing := [name for name in _NEEDED if name not in named]:
+        words = {"mass_per_length": "mass [kg/m]", "bending_stiffness": "EI flap [N m2]"}
+        found = ", ".join(column.head for column in table.columns)
+        raise text.refusal(table.head_line, f"expected a column {words[missing[0]]}; headings: {found}")
+    columns = {name: np.array(column.values, dtype=float) for name, column in named.items()}
+    for name in (RADIUS, "x", "x/L"):
+        columns.pop(name, None)
+    return _with_twist(table, columns)
+
+
+def _with_twist(table: CsvTable, columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the columns with the twist in degrees, with the sign convention of this package."""
+    senses = {"twist": 1.0, **dict.fromkeys(_STRUCTURAL_TWIST, -1.0)}
+    given = [name for name in senses if name in columns]
+    if len(given) > 1:
+        raise table.text.refusal(table.head_line, f"expected one twist, found {' and '.join(given)}")
+    for name in given:
+        if "second_bending_stiffness" not in columns:
+            said = f"expected a column EI edge [N m2], too, as {name} turns both directions of bending"
+            raise table.text.refusal(table.head_line, said)
+        degrees = [round(senses[name] * math.degrees(value), 12) for value in columns.pop(name)]
+        columns["twist"] = np.array(degrees)
+    return columns
+
+
+_ELASTODYN, _BEAMDYN = 1, 2  # values of the setting CompElast; 3 is a simplified ElastoDyn
+_NO_TIP_MASS = "OpenFAST ignores this mass if BeamDyn computes the blades; to include it, give tip in [beam]"
+
+
+def read_openfast_file(text: DataText) -> Blade:
+    """Read the first blade of the turbine: from BeamDyn's file if BeamDyn computes it, else ElastoDyn's."""
+    found = named_values(text, {"edfile", "compelast", "bdbldfile1"})
+    model = named_number(text, found["compelast"]) if "compelast" in found else _ELASTODYN
+    rotor = elastodyn.read_main_file(read_data(named_file(text, found["edfile"])))
+    if model == _BEAMDYN and "bdbldfile1" in found:
+        main = read_data(named_file(text, found["bdbldfile1"]))
+        blade = beamdyn_blade.read_main_file(main, rotor.hub_radius)
+        kept = {name: getattr(rotor, name) for name in ("pitch", "precone", "speed")}
+        mass = rotor.tip.get("mass", 0.0)  # OpenFAST ignores this mass if BeamDyn computes the blades
+        ignored = (*blade.ignored, *ignore("TipMass(1)", mass, "kg", _NO_TIP_MASS))
+        return replace(blade, sources=(text.path, rotor.sources[0], *blade.sources), ignored=ignored, **kept)
+    reason = "OpenFAST computes these blades by another module; this is the blade in ElastoDyn's files"
+    ignored = (*ignore("CompElast", model if model != _ELASTODYN else 0.0, "", reason), *rotor.ignored)
+    return replace(rotor, sources=(text.path, *rotor.sources), ignored=ignored)
+
 
 _KINDS = (
     "a blade file or the main file of ElastoDyn, FAST 7, OpenFAST or BeamDyn, a .bmi or section properties "
@@ -197,7 +325,7 @@ def read_deck_text(text: DataText, length: float | None = None, hub_radius: floa
 def is_deck(text: DataText) -> bool:
     """Return whether a text is a blade file of a known kind."""
     known = any(len(named_values(text, names)) == len(names) for _, names, _, _ in _READERS)
-    return known or csv_table.is_csv(text)
+    return known or is_csv(text)
 
 
 def _read(text: DataText, given: dict[str, float | None]) -> Blade:
@@ -206,11 +334,12 @@ def _read(text: DataText, given: dict[str, float | None]) -> Blade:
         if len(named_values(text, names)) == len(names):
             needed = _needed(text, given, remedy, **{name: name in wanted for name in given})
             return read(text, *(needed[name] for name in wanted))
-    if csv_table.is_csv(text):
-        length, hub_radius = csv_table.needs_length(text), csv_table.needs_hub_radius(text)
+    if is_csv(text):
+        table = read_station_file(text, _MORE)
+        heads = table.named()
         remedy = "a column r [m], measured from the axis of rotation, gives length and hub radius"
-        needed = _needed(text, given, remedy, length, hub_radius)
-        return csv_table.read_csv_blade(text, **needed)
+        needed = _needed(text, given, remedy, length="x/L" in heads, hub_radius=RADIUS not in heads)
+        return read_csv_blade(text, table, **needed)
     raise ConfigError(str(text.path), [f"it is none of the files that are read: expected {_KINDS}"])
 
 
@@ -220,7 +349,7 @@ _BOTH = ("length", "hub_radius")
 _READERS: tuple[tuple[Callable[..., Blade], set[str], str, tuple[str, ...]], ...] = (
     (elastodyn.read_blade_file, {"nblinpst"}, "the main file has TipRad and HubRad", _BOTH),
     (elastodyn.read_main_file, {"tiprad", "bldfile1"}, "", ()),
-    (openfast.read_openfast_file, {"edfile"}, "", ()),
+    (read_openfast_file, {"edfile"}, "", ()),
     (
         beamdyn_blade.read_main_file,
         {"kptotal", "bldfile"},

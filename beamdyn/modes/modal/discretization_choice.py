@@ -217,7 +217,7 @@ def affordable_target(scene: Scene, discretization: DiscretizationChoice, target
         return target
     if scene.bends_in_space:
         target = max(
-            target, SEGMENTED_SPACE_TARGET if _count_segments(scene) > _FEW_SEGMENTS else SPACE_TARGET
+            target, SEGMENTED_SPACE_TARGET if count_segments(scene) > _FEW_SEGMENTS else SPACE_TARGET
         )
     return max(target, FEM_TARGET * (discretization == "fem"), PLATE_TARGET * scene.models_width)
 
@@ -265,7 +265,7 @@ def refine_model(model: Model) -> Model | None:
     """Build the next finer model; None if no affordable one is left."""
     finer = model.discretization.finer()
     if isinstance(finer, Ritz):  # finite elements have a separate limit
-        segments = _count_segments(model.scene) if finer.on_each_segment else 1
+        segments = count_segments(model.scene) if finer.on_each_segment else 1
         across = 1 + finer.spaces(model.scene.modelled_beam).across if model.scene.models_width else 1
         finer = finer if finer.functions * segments * across <= _MOST_IN_ALL * min(across, 2) else None
     if finer is None:
@@ -276,7 +276,7 @@ def refine_model(model: Model) -> Model | None:
     return refined
 
 
-def _count_segments(scene: Scene) -> int:
+def count_segments(scene: Scene) -> int:
     """Count the segments of the beam between its stations and breakpoints."""
     return len(scene.modelled_beam.breakpoints) - 1
 
@@ -313,7 +313,7 @@ def _first_fem(
 
 def ensure_size(scene: Scene, discretization: DiscretizationChoice, modes: int) -> DiscretizationChoice:
     """Replace a discretization that has too few functions for the modes of a scene by "ritz"."""
-    segments = _count_segments(scene)
+    segments = count_segments(scene)
     fits = isinstance(discretization, str) or _fits(discretization, modes, segments)
     return discretization if fits else "ritz"
 
@@ -323,7 +323,7 @@ def most_modes(scene: Scene, discretization: DiscretizationChoice, modes: int) -
     if isinstance(discretization, str):
         return modes
     check_discretization(discretization)
-    return max(1, _most_that_fit(discretization, modes, _count_segments(scene)))
+    return max(1, _most_that_fit(discretization, modes, count_segments(scene)))
 
 
 def _most_that_fit(discretization: Discretization, modes: int, segments: int) -> int:

@@ -119,13 +119,13 @@ def _numbers(scene: Scene) -> list[FreeNumber]:
             (free,) = free_numbers(scene, {path: None})
         except InvalidValue:  # the scene has no such number
             continue
-        low, high = _physical(scene, free)
+        low, high = _physical(free)
         if low < high:  # false for a radius of 0, which keeps the root on the axis
             found.append(replace(free, bounds=(low, high)))
     return found
 
 
-def _physical(scene: Scene, free: FreeNumber) -> tuple[float, float]:
+def _physical(free: FreeNumber) -> tuple[float, float]:
     if free.path in SPRINGS:
         return free.bounds
     if free.path == "beam.tip.mass":

@@ -31,6 +31,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import reduce
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,8 +64,7 @@ _CONSTANT = 10.0
 _ROUNDING = 1e-13  # rounding error of the logarithm of a norm, per step
 
 
-@dataclass(frozen=True)
-class LargestExponent:
+class LargestExponent(NamedTuple):
     """Largest Lyapunov exponent as a growth rate with its error, from two bounds.
 
     Parameters

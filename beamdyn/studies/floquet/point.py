@@ -24,9 +24,8 @@ from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 from beamdyn.studies.floquet.exponents import largest_exponent
-from beamdyn.studies.floquet.monodromy import COARSER, meet_again
+from beamdyn.studies.floquet.monodromy import COARSER, check_periodic, meet_again
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 
 MULTIPLIERS, EXPONENT = "multipliers", "exponent"
 _ON_CIRCLE = "stability is not decided: multipliers meet, or lie on the unit circle, within their errors"
@@ -181,54 +180,35 @@ def floquet_multipliers(
     """
     start = perf_counter()
     scenes = check_periodic(scene, modes, discretization)
-    if not meet_again(scenes.scene):
-        return _by_exponent(scenes, start)
-    scene, multipliers = scenes.scene, multipliers_of(scenes.monodromy({}))
-    status, (rate, error) = str(multipliers.verdict[0]), map(float, np.ravel(multipliers.growth))
-    model, _ = scenes.modal(scene)
-    method = f"{model.discretization}, {counted(scenes.modes, 'mode')}, Gauss collocation of order 16"
-    sign = np.zeros(multipliers.value.shape[1]) if multipliers.sign is None else multipliers.sign[0]
+    scene, (model, _) = scenes.scene, scenes.modal(scenes.scene)
+    if meet_again(scene):
+        kind, how, why = MULTIPLIERS, "Gauss collocation of order 16", _ON_CIRCLE
+        found = multipliers_of(scenes.monodromy({}))
+        value, errors, period = found.value[0], found.error[0], float(found.period[0])
+        sign = np.zeros(len(value)) if found.sign is None else found.sign[0]
+        status, (rate, error) = str(found.verdict[0]), map(float, np.ravel(found.growth))
+    else:
+        kind, how, why = EXPONENT, "largest Lyapunov exponent over two phases", _BOUNDED
+        rate, error, status, period = largest_exponent(scene, scenes.equations(scene))
+        value, errors, sign = np.zeros(0, dtype=complex), np.zeros(0), np.zeros(0)
+    method = f"{model.discretization}, {counted(scenes.modes, 'mode')}, {how}"
     return FloquetMultipliers(
         status=status,
         growth_rate=rate,
         growth_rate_error=error,
-        multipliers=multipliers.value[0],
-        multiplier_errors=multipliers.error[0],
+        multipliers=value,
+        multiplier_errors=errors,
         krein_sign=sign,
-        period=float(multipliers.period[0]),
-        warnings=tuple(_warnings(scene, status, rate, error)),
+        period=period,
+        warnings=tuple(_warnings(scene, status, rate, error, why)),
         provenance=Provenance.since(start, method, COARSER),
         modes=scenes.modes,
         scene=scene,
+        method=kind,
     )
 
 
-def _by_exponent(scenes: PeriodicScenes, start: float) -> FloquetMultipliers:
-    """Compute the result from the largest Lyapunov exponent, for two frequencies without a common period."""
-    scene, (model, _) = scenes.scene, scenes.modal(scenes.scene)
-    found = largest_exponent(scene, scenes.equations(scene))
-    method = (
-        f"{model.discretization}, {counted(scenes.modes, 'mode')}, largest Lyapunov exponent over two phases"
-    )
-    return FloquetMultipliers(
-        status=found.status,
-        growth_rate=found.rate,
-        growth_rate_error=found.error,
-        multipliers=np.zeros(0, dtype=complex),
-        multiplier_errors=np.zeros(0),
-        krein_sign=np.zeros(0),
-        period=found.period,
-        warnings=tuple(_warnings(scene, found.status, found.rate, found.error, _BOUNDED)),
-        provenance=Provenance.since(start, method, COARSER),
-        modes=scenes.modes,
-        scene=scene,
-        method=EXPONENT,
-    )
-
-
-def _warnings(
-    scene: Scene, status: str, rate: float, error: float, why: str = _ON_CIRCLE
-) -> Iterator[Statement]:
+def _warnings(scene: Scene, status: str, rate: float, error: float, why: str) -> Iterator[Statement]:
     """Yield warnings about the result: neglected effects, growth, and why stability is undecided."""
     yield from warn_of_left_out(scene)
     said = {"quantity": "growth rate", "value": rate}

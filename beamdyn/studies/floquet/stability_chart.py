@@ -39,12 +39,19 @@ from beamdyn.scene.scene import Scene, SceneResult
 from beamdyn.scene.validity import warn_of_left_out
 from beamdyn.studies.floquet.exponents import largest_exponent
 from beamdyn.studies.floquet.interpolation import interpolate_on_grid
-from beamdyn.studies.floquet.monodromy import COARSER, Monodromy, meet_again, period_of, rates_of
+from beamdyn.studies.floquet.monodromy import (
+    COARSER,
+    Monodromy,
+    PeriodicScenes,
+    check_periodic,
+    meet_again,
+    period_of,
+    rates_of,
+)
 from beamdyn.studies.floquet.multipliers import STABLE, UNDECIDED, UNSTABLE, multipliers_of
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes, check_periodic
 from beamdyn.studies.study import VERSIONS
 
-_NAMES = "status", "rate", "error", "radius", "period"
+_NAMES = "status", "growth_rate", "growth_rate_error", "spectral_radius", "period"
 _TASK = 16  # number of scenes in a task
 _JUDGED = 3  # number of values of each number at which the model error is computed
 # Largest relative variation with which ratios of phase rates, and products of the period and a number, count
@@ -203,11 +210,7 @@ def stability_chart(
     method = f"{basis}, Gauss collocation of order 16, interpolated"
     return StabilityChart(
         inputs=grid.inputs,
-        status=found["status"],
-        growth_rate=found["rate"],
-        growth_rate_error=found["error"],
-        spectral_radius=found["radius"],
-        period=found["period"],
+        **found,
         integrated=integrated,
         warnings=(*_warnings(scenes.scene, found["status"]), *run.warnings),
         provenance=Provenance.since(start, method, COARSER),

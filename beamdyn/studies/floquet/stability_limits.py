@@ -26,8 +26,8 @@ from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.scene.scene import Scene, SceneResult
+from beamdyn.studies.floquet.monodromy import PeriodicScenes
 from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, Multipliers, multipliers_of
-from beamdyn.studies.floquet.periodic_scenes import PeriodicScenes
 from beamdyn.studies.floquet.stability_chart import StabilityChart, stability_chart
 
 _REAL = 1e-3  # a multiplier with a smaller imaginary part counts as real, where two meet at 1 or -1

@@ -20,6 +20,7 @@ from beamdyn.equations.fem import Fem
 from beamdyn.equations.ritz import Ritz
 from beamdyn.modes.bounds import frequency_bounds
 from beamdyn.modes.locus import frequency_locus
+from beamdyn.modes.modal.discretization_choice import count_segments
 from beamdyn.modes.modal.error_estimate import EstimatedModes, solve_with_error
 from beamdyn.modes.modal.model import Model, bends
 from beamdyn.modes.model_error.added_effects import list_effects
@@ -100,7 +101,7 @@ def sizes_of_eigenvalues(eigenvalues: np.ndarray) -> np.ndarray:
 def solve_reference(scene: Scene, speeds: np.ndarray, modes: int) -> EstimatedModes:
     """Compute reference modes with as many Ritz functions as resolve them."""
     *coarser, finest = _REFERENCE_ACROSS if scene.models_width else _REFERENCES
-    segments = _segments(scene)
+    segments = count_segments(scene)
     for functions in coarser:
         solution = _solve_by_ritz(scene, speeds, modes, functions // segments)
         if solution.error.max() <= _RESOLVED:
@@ -134,7 +135,7 @@ def _compare_with_bounds(exact: EstimatedModes, speed: float, modes: int) -> str
 
 def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     """Yield all families to measure: Ritz bases, finite elements, and the basis chosen for a tolerance."""
-    segments, bases = _segments(scene), {"legendre": _LEGENDRE, "eigenfunctions": _EIGENFUNCTIONS}
+    segments, bases = count_segments(scene), {"legendre": _LEGENDRE, "eigenfunctions": _EIGENFUNCTIONS}
     for basis, sizes in bases.items():
         yield Family(f"Ritz, {basis}", _basis_settings(scene, speeds, modes, basis, sizes, segments))
     meshes: tuple[Mesh, ...] = ("graded", "uniform")
@@ -144,10 +145,6 @@ def _families(scene: Scene, speeds: np.ndarray, modes: int) -> Iterator[Family]:
     if not scene.physics.stretch:
         cases = (TimedCase(f"tolerance={t:.0e}", t, _full_call(scene, speeds, modes, t)) for t in _TOLERANCES)
         yield Family("tolerance=", tuple(cases))
-
-
-def _segments(scene: Scene) -> int:
-    return len(scene.modelled_beam.breakpoints) - 1
 
 
 def _basis_settings(
@@ -269,7 +266,7 @@ def physics_diagram(scene: Scene, speed: float, modes: int = 3, budget: float = 
         return Diagram.make(title, what, "", 0.0, (), skipped or ("no effect that can be added changes it",))
     full = choices[-1]
     true = pick(full.frequency, given.frequency[:modes])
-    speeds, segments = np.array([speed]), _segments(scene)
+    speeds, segments = np.array([speed]), count_segments(scene)
     families = [
         Family(
             c.name, _basis_settings(c.scene, speeds, _count(c.scene, modes), "legendre", _FUNCTIONS, segments)
