@@ -11,7 +11,8 @@ from beamdyn.common.words import Words
 from beamdyn.equations.discretization import Discretization
 from beamdyn.equations.root_moment import RootMoment, root_moment, strain_per_moment
 from beamdyn.scene.names_elsewhere import GIVE_IT
-from beamdyn.scene.scene import Scene, how_without_large_deflection
+from beamdyn.scene.physics import how_without_large_deflection
+from beamdyn.scene.scene import Scene
 from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
 from beamdyn.transient.system import ModalSystem
 from beamdyn.transient.time_error import estimate_time_error
@@ -46,7 +47,7 @@ class RootStrain:
         """
         if isinstance(system, BeamInSpaceSystem):
             bound = "the root strain of a beam with large deflection is not computed"
-            remedy = how_without_large_deflection(scene.beam)
+            remedy = how_without_large_deflection(scene.beam, scene.physics_choice is not None)
             raise InvalidValue("physics.large_deflection", True, bound, remedy)
         if scene.beam.outer_fibre is None:
             raise ValueError(Words("root_strain needs outer_fibre: ", GIVE_IT))

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, count
+from beamdyn.common.inputs.checks import count
 from beamdyn.common.inputs.described import Designs, VariedInput
 from beamdyn.common.results.snapshots import FieldsOnly
 from beamdyn.equations.effects import LARGE_DEFLECTION
@@ -18,6 +18,7 @@ from beamdyn.modes.modal.model import Model, find_speed_range
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.scene.numbers import SPEED, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import refuse_large_deflection
 from beamdyn.studies.floquet.monodromy import (
     MOST_TURNS,
     Monodromy,
@@ -104,14 +105,13 @@ def check_periodic(
         If an argument is out of its range, the motion is not periodic, or large deflection is modelled.
     """
     check_scene(scene)
+    refuse_large_deflection(scene, _STRAIGHT)
     modes = count("modes", modes)
     if scene.chooses_physics:
         extremes = Designs(inputs).extremes() if inputs else [{}]
         each = PeriodicScenes(scene, modes, discretization)
         most = max([_choose_physics(each.at(numbers), modes) for numbers in extremes], key=_needs)
         scene = replace(scene, physics=most.physics, physics_choice=most.physics_choice)
-    if scene.physics.large_deflection:
-        raise InvalidValue("physics.large_deflection", True, _STRAIGHT, "leave it out")
     return PeriodicScenes(scene, modes, discretization)
 
 
