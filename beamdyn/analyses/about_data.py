@@ -21,7 +21,7 @@ from beamdyn.common.results.files import write_text
 from beamdyn.files.measured_curve_files import Frequency
 from beamdyn.files.measured_data import half_unit, measurements_of
 from beamdyn.files.scene_inputs import SceneInput
-from beamdyn.files.scenes import with_numbers_in_file
+from beamdyn.files.scenes import check_numbers_in_file, with_numbers_in_file
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.numbers import is_speed
 
@@ -153,10 +153,14 @@ def identify(
     if isinstance(given, MeasuredCurves):
         source = data.path if isinstance(data, DataText) else data
         raise ValueError(f"{source}: identify takes natural frequencies; use this file with compare")
-    found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, parse_free(free), starts, seed)
+    numbers = parse_free(free)
     if write is not None and file is not None:
+        check_numbers_in_file(file, scene, numbers, write)
+    found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, numbers, starts, seed)
+    untold = _untold(found)
+    if write is not None and file is not None and not untold:
         _write(found, file, write, given.source)
-    return Answer(found, _untold(found))
+    return Answer(found, untold)
 
 
 def _untold(found: bd.Identification) -> str:
@@ -173,8 +177,6 @@ def _write(found: bd.Identification, scene: Path, to: Path, source: str) -> None
         f"all other inputs are those of {scene.name}.",
         f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %.",
     ]
-    # `scene_found` is None only if the data do not determine a parameter: an error was then raised above.
-    assert found.scene_found is not None
     write_text(to, with_numbers_in_file(scene, values, to, head))
 
 

@@ -15,7 +15,7 @@ from beamdyn.analyses.options import Discretization, FrequencyTolerance, Text
 from beamdyn.analyses.values import in_unit_of, parse_quantity, parse_speed
 from beamdyn.common.edge.file_words import in_files
 from beamdyn.common.results.files import write_text
-from beamdyn.files.scenes import with_numbers_in_file
+from beamdyn.files.scenes import check_numbers_in_file, with_numbers_in_file
 from beamdyn.studies.questions import KINDS
 
 _WORDS = {"frequency": "frequencies", "critical speed": "critical_speed", "resonance speed": "crossings"}
@@ -71,7 +71,10 @@ def design(
     scene = in_unit_of(scene, *(each["speed"] for each in asked))
     targets = [_target(each, scene) for each in asked]
     how = {"discretization": discretization, "tolerance": tolerance}
-    found = bd.design(scene, parse_free(free), targets, seed=seed, **how)
+    numbers = parse_free(free)
+    if write is not None and file is not None:
+        check_numbers_in_file(file, scene, numbers, write)
+    found = bd.design(scene, numbers, targets, seed=seed, **how)
     if write is not None and file is not None:
         _write(found, file, write)
     return Answer(found, "" if found.found else in_files(found.sentences()[0], found.display_units))
