@@ -251,3 +251,33 @@ def test_what_polynomials_do_not_resolve_is_taken_at_the_values():
     )
     np.testing.assert_array_equal(found.value[:, 0, 0], np.abs(x))
     assert found.error == 0
+
+
+# Modes that are left out --------------------------------------------------------------------------
+
+
+def test_the_error_by_modes_left_out_covers_many_modes():
+    """Two modes more change the growth rate by a quarter of what all others do: they agree by chance."""
+    beam = bd.Beam.rectangular(
+        0.0415, 0.0039, 0.000403, 200e9, 7850.0, tip=bd.TipMass(3e-4, offset=2.5e-4, inertia=4.4e-10)
+    )
+    motion = bd.PulsatingRotation(98.35, 0.3549, 801.4)
+    scene = bd.Scene(beam, bd.Mount(0.193, math.radians(-25.28), math.pi / 2), motion, 0.05)
+    found, more, many = (bd.floquet_multipliers(scene, modes=n) for n in (2, 4, 14))
+    change = abs(found.growth_rate - many.growth_rate)
+    assert 3 * abs(found.growth_rate - more.growth_rate) < change <= found.mode_error
+
+
+def test_another_verdict_with_more_modes_is_told():
+    """The one mode that is kept does not resonate, the first two together do."""
+    beam = bd.Beam.rectangular(0.29, 0.11, 0.0034, 200e9, 1900.0, tip=bd.TipMass(0.39))
+    mount = bd.Mount(1.14, math.radians(150.9), math.radians(79.7))
+    scene = bd.Scene(beam, mount, bd.PulsatingRotation(299.2, 0.336, 594.3), 0.01)
+    found, said = (
+        bd.floquet_multipliers(scene, modes=1),
+        "modes the motion is unstable, with a growth rate of",
+    )
+    assert found.status == "stable"
+    assert any(said in each for each in found.model_warnings())
+    assert said in found.to_json()
+    assert not any(said in each for each in bd.floquet_multipliers(scene, modes=2).model_warnings())
