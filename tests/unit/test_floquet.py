@@ -268,16 +268,31 @@ def test_the_error_by_modes_left_out_covers_many_modes():
     assert 3 * abs(found.growth_rate - more.growth_rate) < change <= found.mode_error
 
 
+RESONATING = bd.Scene(
+    bd.Beam.rectangular(0.29, 0.11, 0.0034, 200e9, 1900.0, tip=bd.TipMass(0.39)),
+    bd.Mount(1.14, math.radians(150.9), math.radians(79.7)),
+    bd.PulsatingRotation(299.2, 0.336, 594.3),
+    0.01,
+)
+
+
 def test_another_verdict_with_more_modes_is_told():
     """The one mode that is kept does not resonate, the first two together do."""
-    beam = bd.Beam.rectangular(0.29, 0.11, 0.0034, 200e9, 1900.0, tip=bd.TipMass(0.39))
-    mount = bd.Mount(1.14, math.radians(150.9), math.radians(79.7))
-    scene = bd.Scene(beam, mount, bd.PulsatingRotation(299.2, 0.336, 594.3), 0.01)
     found, said = (
-        bd.floquet_multipliers(scene, modes=1),
+        bd.floquet_multipliers(RESONATING, modes=1),
         "modes the motion is unstable, with a growth rate of",
     )
     assert found.status == "stable"
     assert any(said in each for each in found.model_warnings())
     assert said in found.to_json()
-    assert not any(said in each for each in bd.floquet_multipliers(scene, modes=2).model_warnings())
+    assert not any(said in each for each in bd.floquet_multipliers(RESONATING, modes=2).model_warnings())
+
+
+def test_charts_tell_other_verdicts_with_more_modes():
+    vary = {"motion.frequency": [560.0, 594.3], "motion.fluctuation": [0.05, 0.336]}
+    few, more = (bd.stability_chart(RESONATING, vary, modes=n) for n in (1, 3))
+    other = (few.status != more.status).sum()
+    assert other == 2
+    said = f"at {other} of 4 points the verdict is another one with 3 modes"
+    assert any(said in each for each in few.model_warnings())
+    assert not any("another one" in each for each in more.model_warnings())
