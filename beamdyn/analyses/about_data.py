@@ -23,7 +23,7 @@ from beamdyn.common.results.files import write_text
 from beamdyn.files.measured_curve_files import Frequency
 from beamdyn.files.measured_data import half_unit, measurements_of
 from beamdyn.files.scene_inputs import SceneInput
-from beamdyn.files.scenes import with_numbers_in_file
+from beamdyn.files.scenes import check_numbers_in_file, with_numbers_in_file
 from beamdyn.scene.measured_curves import MeasuredCurves
 from beamdyn.scene.numbers import is_speed
 from beamdyn.studies.questions import KINDS
@@ -156,13 +156,16 @@ def identify(
     if isinstance(given, MeasuredCurves):
         source = data.path if isinstance(data, DataText) else data
         raise ValueError(f"{source}: identify takes natural frequencies; use this file with compare")
-    found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, parse_free(free), starts, seed)
+    numbers = parse_free(free)
     if write is not None and file is not None:
-        assert found.scene_found is not None  # an error if the data do not determine a parameter
+        check_numbers_in_file(file, scene, numbers, write)
+    found = bd.identify(in_unit_of(scene, f"0 {given.speed_unit}"), given, numbers, starts, seed)
+    untold = _untold(found)
+    if write is not None and file is not None and not untold:
         ranges = ", ".join(found.says(k) for k in range(len(found.names)))
         said = f"95 % intervals: {ranges}; remaining deviation {100 * found.scatter:.2g} %."
         _write(found, file, write, "identify", f" from {given.source or 'given frequencies'}", said)
-    return Answer(found, _untold(found))
+    return Answer(found, untold)
 
 
 def _untold(found: bd.Identification) -> str:
@@ -346,7 +349,10 @@ def design(
     scene = in_unit_of(scene, *(each["speed"] for each in asked))
     targets = [_target(each, scene) for each in asked]
     how = {"discretization": discretization, "tolerance": tolerance}
-    found = bd.design(scene, parse_free(free), targets, seed=seed, **how)
+    numbers = parse_free(free)
+    if write is not None and file is not None:
+        check_numbers_in_file(file, scene, numbers, write)
+    found = bd.design(scene, numbers, targets, seed=seed, **how)
     if write is not None and file is not None:
         wanted = ", ".join(each.says for each in found.targets)
         said = f"This scene {'has' if found.found else 'comes nearest to'}: {wanted}."

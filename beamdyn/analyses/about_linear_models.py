@@ -111,8 +111,9 @@ class RandomInput:
         if self.speed is not None:
             raise ValueError("--speed, --velocity: give one of the two")
         if not isinstance(scene.motion, RollingWheel):
+            remedy = "" if self.psd is None else ", or --speed"  # a road needs the wheel, too
             raise ValueError(
-                '--velocity: the scene has no rolling wheel; give --speed, or motion.kind = "rolling"'
+                f'--velocity: the scene has no rolling wheel; give motion.kind = "rolling"{remedy}'
             )
         return parse_positive("--velocity", self.velocity, "m/s") / scene.motion.rolling_radius
 

@@ -32,7 +32,7 @@ from beamdyn.common.results.columns import DisplayUnits, known_unit
 from beamdyn.files.scene_inputs import PLACES, VARYING, SceneInput
 from beamdyn.scene.motion.kinds import KINDS
 from beamdyn.scene.motion.oscillating import check_record_times
-from beamdyn.scene.numbers import unit_of, with_numbers
+from beamdyn.scene.numbers import number_at, unit_of, with_numbers
 from beamdyn.scene.scene import Scene
 
 _DIGITS = 10
@@ -93,6 +93,23 @@ def with_numbers_in_file(
         raise refusal
     comments = [f"# {''.join(c if c.isprintable() else ' ' for c in said)}" for said in head]
     return "\n".join([*comments, body])
+
+
+def check_numbers_in_file(
+    path: str | PathLike[str],
+    scene: Scene,
+    free: Mapping[str, tuple[float, float] | None],
+    to: str | PathLike[str],
+) -> None:
+    """Refuse numbers that are to be found, before that takes time, if a scene file cannot state them.
+
+    `free` has the bounds of each number [SI units] by path, or None; `path`, `to` and the error raised are
+    those of `with_numbers_in_file`.
+    """
+    own = {name: number_at(scene, name) for name in free}
+    first = {name: bounds[0] for name, bounds in free.items() if bounds is not None}  # where it varies along
+    known = {name: first.get(name) if value != value else value for name, value in own.items()}
+    with_numbers_in_file(path, {name: value for name, value in known.items() if value is not None}, to)
 
 
 def _written(path: str, value: float) -> str | float:

@@ -26,8 +26,8 @@ from beamdyn.modes.modal.discretization_choice import (
 from beamdyn.modes.modal.distance_across import distance_across
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.model_error.effect_choice import NOTHING_BARRED, choose_physics
-from beamdyn.scene.scene import Scene, check_scene, how_without_large_deflection
-from beamdyn.scene.validity import check_speeds
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import check_speeds, refuse_large_deflection
 
 _MODES = 5  # number of modes for which physics and trial functions are chosen, if all functions are kept
 _STRAIGHT = "linear models describe small motions about the straight beam"
@@ -51,12 +51,10 @@ def check_linear(
     check_speeds(speed, "speed")
     if modes is not None:
         count("modes", modes, remedy=_OR_ALL)
+    refuse_large_deflection(scene, _STRAIGHT)
     scene = choose_physics(
         scene, [speed], modes or _MODES, barred={LARGE_DEFLECTION.name: _STRAIGHT} | dict(barred)
     )
-    if scene.physics.large_deflection:
-        remedy = how_without_large_deflection(scene.beam)
-        raise InvalidValue("physics.large_deflection", True, _STRAIGHT, remedy)
     return scene, speed
 
 

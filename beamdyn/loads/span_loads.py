@@ -30,8 +30,8 @@ from beamdyn.loads.stations import (
     stations_at,
 )
 from beamdyn.modes.repeated import JudgedByRepeating
-from beamdyn.scene.scene import Scene, SceneResult, how_without_large_deflection
-from beamdyn.scene.validity import warn_of_elastic_limit
+from beamdyn.scene.scene import Scene, SceneResult
+from beamdyn.scene.validity import refuse_large_deflection, warn_of_elastic_limit
 
 REMEDIES = {
     "strain": "give the beam an outer_fibre, or points of the section",
@@ -333,7 +333,7 @@ class AskedLoads:
         cls, scene: Scene, at: Positions | None, points: SectionPoints | None, youngs_modulus: float | None
     ) -> AskedLoads:
         """Check the stations, the points of sections and Young's modulus of a request."""
-        refuse_large_deflection(scene)
+        refuse_large_deflection(scene, STRAIGHT)
         refuse_uncovered_camber(scene)
         start, stations = perf_counter(), stations_at(scene.modelled_beam, at)
         sections = sections_at(scene, stations, points, youngs_modulus)
@@ -357,10 +357,3 @@ class AskedLoads:
             "warnings": (*self.notes, *warnings, *warn_of_elastic_limit(by_quantity["strain"])),
             "provenance": Provenance.since(self.start, method, compared_with),
         }
-
-
-def refuse_large_deflection(scene: Scene) -> None:
-    """Refuse a scene with large deflection, to which virtual work on the straight beam does not apply."""
-    if scene.physics.large_deflection:
-        remedy = how_without_large_deflection(scene.beam)
-        raise InvalidValue("physics.large_deflection", True, STRAIGHT, remedy)

@@ -15,7 +15,7 @@ from beamdyn.accuracy.refinement import BASES_OF_STATIC_LOADS, refine
 from beamdyn.common.inputs.checks import ascending, real, within
 from beamdyn.common.results.statements import announced
 from beamdyn.loads import span_loads
-from beamdyn.loads.load_rows import barred_of_loads, span_rows
+from beamdyn.loads.load_rows import STRAIGHT, barred_of_loads, span_rows
 from beamdyn.loads.stations import Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
@@ -33,7 +33,13 @@ from beamdyn.modes.model_error.left_out_changes import SolvedValues
 from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.motion.base import MotionSample
 from beamdyn.scene.scene import Scene, check_scene
-from beamdyn.scene.validity import check_speeds, warn_of_left_out, warn_of_static_deflection, warn_of_strain
+from beamdyn.scene.validity import (
+    check_speeds,
+    refuse_large_deflection,
+    warn_of_left_out,
+    warn_of_static_deflection,
+    warn_of_strain,
+)
 
 _MODES = 3  # number of modes that the model resolves: loads in equilibrium need no more
 _SINGULAR = 1e-13  # eigenvalue of the scaled stiffness below which it counts as 0
@@ -144,7 +150,7 @@ def static_loads(
     (0.471, 0.471)
     """
     check_scene(scene)
-    span_loads.refuse_large_deflection(scene)
+    refuse_large_deflection(scene, STRAIGHT)
     speeds = ascending("speeds", speeds)
     check_speeds(speeds)
     theta = real("angle", angle, "rad")

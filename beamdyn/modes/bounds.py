@@ -129,9 +129,9 @@ def frequency_bounds(scene: Scene, speed: float = 0.0, modes: int = 3) -> Freque
     """
     start = perf_counter()
     check_scene(scene)
-    unresolved, scene = scene, plain_physics(scene)
     speed, modes = real("speed", speed, "rad/s"), count("modes", modes)
     refuse_uncovered(scene, speed)
+    unresolved, scene = scene, plain_physics(scene)
     check_speeds(speed, "speed")
     planes = separate_planes(scene, speed != 0)
     parts = (most_functions(plane.beam) * segments_with_functions(plane.beam) for plane in planes)

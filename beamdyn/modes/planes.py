@@ -10,6 +10,7 @@ from beamdyn.scene.beam import Beam, TipMass
 from beamdyn.scene.mount import RIGHT_ANGLE, aligned_cos_sin
 from beamdyn.scene.physics import Physics
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import refuse_large_deflection
 
 _SPRINGS = "root_stiffness", "second_root_stiffness"
 _QUARTER = math.pi / 2
@@ -66,7 +67,8 @@ def refuse_uncovered(scene: Scene, speed: float) -> None:
         If the theorem does not cover the scene; the message has the remedy.
     """
     bound = "bounds are known for an undamped slender beam on a clamped root"
-    for name in ("shear", "rotary_inertia", "camber", "torsion", "stretch", "large_deflection"):
+    refuse_large_deflection(scene, bound)
+    for name in ("shear", "rotary_inertia", "camber", "torsion", "stretch"):
         if getattr(scene.physics, name):
             raise InvalidValue(f"physics.{name}", True, bound, "leave it out of physics")
     if scene.damping_ratio:

@@ -16,7 +16,7 @@ from beamdyn.common.inputs.checks import InvalidValue, positive
 from beamdyn.common.results.one_line import error_at_most, listed, warned
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import NO_ANSWER, OUTSIDE, Statement, announced_of_plain_beam
-from beamdyn.common.words import Named, Words
+from beamdyn.common.words import Named
 from beamdyn.equations import effects
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice, model_to_tolerance
 from beamdyn.modes.modal.distance_across import distance_across
@@ -25,7 +25,7 @@ from beamdyn.modes.modal.model import Model, static_load
 from beamdyn.modes.model_error.effect_choice import choose_physics
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
-from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds
+from beamdyn.scene.validity import LARGE_DEFLECTION, check_speeds, refuse_large_deflection
 
 _LINEAR = "the limits are those of linear theory: the loci of a bent beam have another shape at every angle"
 # Rounding error of an angle [rad]: the cosine of a limit is a quotient of small differences.
@@ -137,10 +137,8 @@ def setting_angle_limits(
     """
     start = perf_counter()
     check_scene(scene)
-    if scene.physics.large_deflection:
-        locus = Named("frequency_locus", "beamdyn locus")
-        remedy = Words("leave it out, or ask ", locus, " for the locus at a setting angle")
-        raise InvalidValue("physics.large_deflection", True, _LINEAR, remedy)
+    locus = Named("frequency_locus", "beamdyn locus")
+    refuse_large_deflection(scene, _LINEAR, ", or ask ", locus, " for the locus at a setting angle")
     for name in ("root_stiffness", "second_root_stiffness")[: scene.physics.planes]:
         if getattr(scene.mount, name) == 0:
             bound = "the first frequency of a beam on a hinge is 0 at rest, and neither rises nor falls"

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from beamdyn.common.inputs.checks import InvalidValue, kind, refuse, set_fields, several
+from beamdyn.common.words import Named, Words
 from beamdyn.scene.names_elsewhere import GIVE_IT, GIVE_OR_COMPUTE, IN_RADIANS
 from beamdyn.scene.points import PointMass, PointSpring
 from beamdyn.scene.profile import Profile
@@ -120,7 +121,7 @@ def warn_of_degrees(name: str, angle: float) -> None:
     """Warn of an angle [rad] beyond half a turn with at most two decimals, which suggests degrees."""
     if abs(angle) > math.pi and round(angle, 2) == angle:
         # With this stack level the warning shows the user's line that calls the class.
-        warnings.warn(f"{name} = {_say_degrees(angle)}", stacklevel=4)
+        warnings.warn(_say_degrees(f"{name} =", angle), stacklevel=4)
 
 
 def warn_of_twist(twist: Profile | None) -> None:
@@ -131,15 +132,17 @@ def warn_of_twist(twist: Profile | None) -> None:
     largest = float(values[np.abs(values).argmax()])
     few_decimals = abs(round(largest, 2) - largest) <= _NEARLY_EQUAL
     if abs(largest) > 2 * math.pi or (abs(largest) > math.pi and few_decimals):
-        warnings.warn(f"twist reaches {_say_degrees(largest)}", stacklevel=3)
+        warnings.warn(_say_degrees("twist reaches", largest), stacklevel=3)
 
 
-def _say_degrees(angle: float) -> str:
-    """Return a warning that an angle [rad] may be in degrees, and how to give degrees."""
-    return (
-        f"{angle:g} rad: angles are in radians, and this is {math.degrees(angle):.4g} degrees; "
+def _say_degrees(said: str, angle: float) -> Words:
+    """Return a warning, which begins as `said`, that an angle [rad] may be in degrees; files have units."""
+    degrees = f"{math.degrees(angle):.4g}"
+    in_python = (
+        f"{said} {angle:g} rad: angles are in radians, and this is {degrees} degrees; "
         f"if {angle:g} degrees were meant, give math.radians({angle:g})"
     )
+    return Named(in_python, f"{said} {degrees} deg, more than half a turn: is its unit right?")
 
 
 def warn_of_material(youngs_modulus: float, density: float) -> None:

@@ -292,6 +292,24 @@ class OfChosenPhysics(Result):
         return super().to_dict() | ({} if choice is None else {"physics_choice": plain(choice)})
 
 
+# Large deflection that the beam requires ---------------------------------------------------------------
+
+
+def needing_large_deflection(beam: Beam) -> list[str]:
+    """Return the names of the properties of a beam that need large deflection: a curved axis, matrices."""
+    needing = [name for name in ("sweep", "prebend") if beam.is_curved and getattr(beam, name) is not None]
+    return needing if beam.matrices is None else [*needing, "matrices"]
+
+
+def how_without_large_deflection(beam: Beam, chosen: bool = False) -> str:
+    """Say how to do without large deflection; `chosen`: physics "auto" has chosen it, or would."""
+    needing = needing_large_deflection(beam)
+    if not needing:
+        return "leave large_deflection out where the deflection is small"
+    without = f"describe the beam without {' and '.join(needing)}"
+    return without if chosen else f"leave large_deflection out, and {without}"
+
+
 # Physics that tip loads and springs require ------------------------------------------------------------
 
 ROOT_SPRINGS = "root_stiffness", "second_root_stiffness"

@@ -30,6 +30,7 @@ from beamdyn.scene.physics import (
     check_point_springs,
     check_root_springs,
     check_tip_load,
+    how_without_large_deflection,
 )
 from beamdyn.scene.points import NO_LOAD, TipLoad
 from beamdyn.scene.profile import Profile, mean
@@ -326,15 +327,6 @@ def _check_large_deflection(scene: Scene, planes: int, remedy: str) -> None:
         bound = "with physics.large_deflection, the damper is not modelled: the tip also moves along the beam"
         remedy = f"give damping.ratios, or {remedy}"
         raise InvalidValue("damping.tip_damper", scene.damping.tip_damper, bound, remedy, "N s/m")
-
-
-def how_without_large_deflection(beam: Beam) -> str:
-    """Say how to do without large deflection, which a curved axis and matrices of sections need."""
-    needing = [name for name in ("sweep", "prebend") if beam.is_curved and getattr(beam, name) is not None]
-    needing += ["matrices"] if beam.matrices is not None else []
-    if not needing:
-        return "leave large_deflection out where the deflection is small"
-    return f"leave large_deflection out, and describe the beam without {' and '.join(needing)}"
 
 
 # Damper at the tip --------------------------------------------------------------------------------

@@ -19,6 +19,7 @@ from beamdyn.common.results.statements import (
     joined,
 )
 from beamdyn.common.words import Setting, Words, percent, told_from
+from beamdyn.scene.physics import how_without_large_deflection, needing_large_deflection
 from beamdyn.scene.rectangle import Rectangle
 from beamdyn.scene.scene import Scene
 
@@ -41,6 +42,17 @@ def check_speeds(speeds: np.ndarray | float, name: str = "speeds") -> None:
     """Refuse speeds [rad/s], the argument `name`, whose powers would overflow (an `InvalidValue`)."""
     bound = "give at most {limit} either way"
     refuse(np.abs(speeds) > FASTEST, name, speeds, "rad/s", bound, limit=FASTEST)
+
+
+def refuse_large_deflection(scene: Scene, bound: str, *instead: str) -> None:
+    """Refuse large deflection in an analysis of the straight beam; `instead` ends the remedy.
+
+    A beam that needs it is refused with physics "auto", too, before that is chosen.
+    """
+    if scene.physics.large_deflection or (scene.chooses_physics and needing_large_deflection(scene.beam)):
+        chosen = scene.chooses_physics or scene.physics_choice is not None
+        remedy = Words(how_without_large_deflection(scene.beam, chosen), *instead)
+        raise InvalidValue("physics.large_deflection", True, bound, remedy)
 
 
 def refuse_bending_in_space(scene: Scene) -> None:

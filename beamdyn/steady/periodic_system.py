@@ -267,6 +267,7 @@ def check_steady_state(motion: Motion | None) -> Motion:
         lacking = f"{type(motion).__name__} has no {', '.join(missing)}"
         said = f"motion: {lacking}, so that its steady state is not known"
         raise ValueError(Words(said, "; simulate it, or use ", ROLLING_WHEEL, " or SteadyRotation"))
+    motion.steady_acceleration(*np.zeros((3, 1)))  # refused where there is no steady state
     return motion
 
 

@@ -29,7 +29,8 @@ from beamdyn.modes.model_error.effect_choice import warn_of_peak
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.modes.model_error.sharp_bending import warn_of_sharp_bending
 from beamdyn.scene.names_elsewhere import GIVE_IT
-from beamdyn.scene.scene import Scene, how_without_large_deflection
+from beamdyn.scene.physics import how_without_large_deflection
+from beamdyn.scene.scene import Scene
 from beamdyn.scene.validity import warn_of_deflection, warn_of_left_out, warn_of_road
 from beamdyn.transient.beam_in_space_system import AnySystem, BeamInSpaceSystem
 from beamdyn.transient.left_out_of_transient import left_out_of_transient
@@ -469,7 +470,7 @@ class RootStrain:
         """
         if isinstance(system, BeamInSpaceSystem):
             bound = "the root strain of a beam with large deflection is not computed"
-            remedy = how_without_large_deflection(scene.beam)
+            remedy = how_without_large_deflection(scene.beam, scene.physics_choice is not None)
             raise InvalidValue("physics.large_deflection", True, bound, remedy)
         if scene.beam.outer_fibre is None:
             raise ValueError(Words("root_strain needs outer_fibre: ", GIVE_IT))

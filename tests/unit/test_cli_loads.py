@@ -190,3 +190,20 @@ def test_an_angle_that_may_be_in_degrees_is_written_with_the_unit_in_a_file(tmp_
     (tmp_path / "blade.toml").write_text(re.sub("(?m)^sweep = .*", 'sweep = "400 rad"', text))
     said = finished(main(["loads", str(tmp_path / "blade.toml"), "--speed", "5 rpm"]), BAD_INPUT).err
     assert "is it in degrees? give it the unit deg" in said and "math.radians" not in said
+
+
+@pytest.mark.parametrize(
+    "line, said", [('twist = "1000 deg"', "twist reaches"), ('setting_angle = "4 rad"', "setting_angle =")]
+)
+def test_a_large_angle_in_a_file_is_warned_of_in_degrees(line, said, tmp_path, finished):
+    key = line.partition(" ")[0]
+    text = (EXAMPLES / "tyre_harvester.toml").read_text()
+    text = (
+        re.sub("(?m)^setting_angle = .*", line, text)
+        if key in text
+        else text.replace("[beam]", f"[beam]\n{line}")
+    )
+    (tmp_path / "scene.toml").write_text(text)
+    warned = finished(main(["draw", str(tmp_path / "scene.toml")]), 0).err
+    assert f"{said} {1000 if key == 'twist' else 229.2} deg, more than half a turn" in warned
+    assert "rad" not in warned

@@ -147,3 +147,14 @@ def test_numbers_that_explain_are_in_the_unit_of_length_of_the_scene():
     found = bd.compare(inches, bd.MeasuredFrequencies([62.1], rounding=0.05))
     (said,) = [in_files(text, found.display_units) for text in found.sentences() if "explain" in text]
     assert "beam.length = 2.02 in" in said and "beam.youngs_modulus = 181 GPa" in said
+
+
+def test_the_picture_of_data_at_rest_has_speeds_that_suit_the_beam():
+    """A blade bent in space was followed to speeds at which it has no equilibrium, for data far off."""
+    strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)
+    lines = [
+        bd.compare(bd.Scene(strip), bd.MeasuredFrequencies([measured])).plot().lines[0].get_xdata()
+        for measured in (65.0, 5000.0)
+    ]
+    np.testing.assert_array_equal(*lines)
+    np.testing.assert_allclose(lines[0].max(), 0.1 * 2 * np.pi * 65.23, rtol=1e-4)

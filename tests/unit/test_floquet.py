@@ -250,3 +250,48 @@ def test_what_polynomials_do_not_resolve_is_taken_at_the_values():
     )
     np.testing.assert_array_equal(found.value[:, 0, 0], np.abs(x))
     assert found.error == 0
+
+
+# Modes that are left out --------------------------------------------------------------------------
+
+
+def test_the_error_by_modes_left_out_covers_many_modes():
+    """Two modes more change the growth rate by a quarter of what all others do: they agree by chance."""
+    beam = bd.Beam.rectangular(
+        0.0415, 0.0039, 0.000403, 200e9, 7850.0, tip=bd.TipMass(3e-4, offset=2.5e-4, inertia=4.4e-10)
+    )
+    motion = bd.PulsatingRotation(98.35, 0.3549, 801.4)
+    scene = bd.Scene(beam, bd.Mount(0.193, math.radians(-25.28), math.pi / 2), motion, 0.05)
+    found, more, many = (bd.floquet_multipliers(scene, modes=n) for n in (2, 4, 14))
+    change = abs(found.growth_rate - many.growth_rate)
+    assert 3 * abs(found.growth_rate - more.growth_rate) < change <= found.mode_error
+
+
+RESONATING = bd.Scene(
+    bd.Beam.rectangular(0.29, 0.11, 0.0034, 200e9, 1900.0, tip=bd.TipMass(0.39)),
+    bd.Mount(1.14, math.radians(150.9), math.radians(79.7)),
+    bd.PulsatingRotation(299.2, 0.336, 594.3),
+    0.01,
+)
+
+
+def test_another_verdict_with_more_modes_is_told():
+    """The one mode that is kept does not resonate, the first two together do."""
+    found, said = (
+        bd.floquet_multipliers(RESONATING, modes=1),
+        "modes the motion is unstable, with a growth rate of",
+    )
+    assert found.status == "stable"
+    assert any(said in each for each in found.model_warnings())
+    assert said in found.to_json()
+    assert not any(said in each for each in bd.floquet_multipliers(RESONATING, modes=2).model_warnings())
+
+
+def test_charts_tell_other_verdicts_with_more_modes():
+    vary = {"motion.frequency": [560.0, 594.3], "motion.fluctuation": [0.05, 0.336]}
+    few, more = (bd.stability_chart(RESONATING, vary, modes=n) for n in (1, 3))
+    other = (few.status != more.status).sum()
+    assert other == 2
+    said = f"at {other} of 4 points the verdict is another one with 3 modes"
+    assert any(said in each for each in few.model_warnings())
+    assert not any("another one" in each for each in more.model_warnings())

@@ -208,6 +208,14 @@ def test_a_road_may_go_on(run):
     assert code == 0 and "resonance" not in err
 
 
+def test_a_velocity_without_a_wheel_names_what_helps(run):
+    asked = ("random", "examples/blade.toml", "--velocity", "90 km/h")
+    code, _, err = run(*asked, "--road", "C")  # which needs the wheel's radius itself
+    assert code == 2 and err.endswith('give motion.kind = "rolling"\n')
+    code, _, err = run(*asked, "--psd", FILE)
+    assert code == 2 and err.endswith('give motion.kind = "rolling", or --speed\n')
+
+
 def test_an_undamped_beam_is_warned_of():
     found = bd.frequency_response(SCENE.undamped, 5.0, [1.0])
     assert any("no damping" in said for said in found.warnings)

@@ -452,3 +452,11 @@ def test_torsion_in_space_has_all_rotary_inertia_and_leaves_none_out():
     np.testing.assert_allclose(
         unasked.left_out_effects.total_of_known, asked.left_out_effects.total_of_known, rtol=1e-6
     )
+
+
+def test_a_layered_beam_without_poissons_ratio_asks_for_what_it_accepts() -> None:
+    """Its section is rectangular, and refuses a shear stiffness."""
+    layered = bd.load_scene(Path(__file__).parents[2] / "examples" / "bimorph.toml")
+    assert bd.natural_modes(layered).left_out_effects.not_known == {
+        "shear deformation": "give poissons_ratio"
+    }

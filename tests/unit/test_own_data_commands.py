@@ -182,3 +182,24 @@ def test_numbers_that_a_file_cannot_state_are_refused(path, value, tmp_path):
     (tmp_path / "scene.toml").write_text(text)
     with pytest.raises(ConfigError, match=f"{re.escape(path)} = {value}.* cannot state this beside"):
         with_numbers_in_file(tmp_path / "scene.toml", {path: value}, tmp_path / "found.toml")
+
+
+@pytest.mark.parametrize(
+    "command", [["identify", "--measured", "1 Hz"], ["design", "--so-that", "frequency = 1 Hz"]]
+)
+def test_a_number_that_the_file_cannot_state_is_refused_before_it_is_found(
+    command, tmp_path, monkeypatch, finished
+):
+    blade, to = str(EXAMPLES / "twisted_blade.toml"), str(tmp_path / "found.toml")
+    monkeypatch.setattr(bd, command[0], None)
+    ask = [command[0], blade, *command[1:], "--free", "mass_per_length=100:200 kg/m", "--write", to]
+    assert "cannot state this beside its other keys" in finished(main(ask), 2).err
+
+
+def test_what_is_not_told_is_shown_and_saved_but_no_scene_is_written(tmp_path, finished):
+    to, found = tmp_path / "scene.toml", tmp_path / "found.json"
+    ask = ["identify", SCENE, "--free", "youngs_modulus, density", *MEASURED]
+    said = finished(main([*ask, "--write", str(to), "--json", str(found)]), 1)
+    assert "cannot be told apart by these data" in said.out
+    assert "the data do not determine beam.youngs_modulus and beam.density" in said.err
+    assert found.exists() and not to.exists()

@@ -455,3 +455,35 @@ def test_terms_of_a_beam_that_straight_equations_refuse_are_listed(name: str) ->
     scene = replace(bd.load_scene(EXAMPLES / f"{name}.toml"), physics="auto")
     left_out = {effect.name: effect.reason for effect in bd.terms(scene).left_out}
     assert left_out[LARGE].endswith("an analysis adds the effect where it matters")
+
+
+@pytest.mark.parametrize(
+    "name, needing", [("swept_blade", "sweep"), ("iea_15_blade", "prebend and matrices")]
+)
+def test_analyses_of_straight_beams_say_what_of_the_beam_needs_large_deflection(
+    name: str, needing: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = replace(bd.load_scene(EXAMPLES / f"{name}.toml"), physics="auto", gravity=9.81)
+    scene = replace(scene, motion=bd.SteadyRotation(1.0))
+    # They are refused before the beam in space is made, whose equilibria take minutes.
+    monkeypatch.setattr("beamdyn.equations.beam_in_space.rotating_beam.assemble_beam_in_space", None)
+    for analysis in (
+        lambda: bd.frequency_response(scene, 1.0, [1.0]),
+        lambda: bd.matrices(scene, 1.0),
+        lambda: bd.static_loads(scene, 1.0),
+        lambda: bd.setting_angle_limits(scene, 1.0),
+        lambda: bd.frequency_bounds(scene, 1.0),
+        lambda: bd.floquet_multipliers(scene),
+        lambda: bd.frequency_sensitivities(scene, 1.0),
+        lambda: bd.critical_speed_sensitivities(scene),
+        lambda: bd.crossing_sensitivities(scene, 1.0),
+        lambda: bd.identify(scene, bd.MeasuredFrequencies([1.0]), {"mount.radius": None}),
+    ):
+        with pytest.raises(InvalidValue, match=f"; describe the beam without {needing}(, or|$)"):
+            analysis()
+
+
+def test_motions_of_a_curved_beam_are_those_of_the_beam_in_space() -> None:
+    scene = replace(bd.load_scene(EXAMPLES / "swept_blade.toml"), physics="auto")
+    found = bd.simulate(scene, t_end=0.01, modes=1)
+    assert found.scene.bends_in_space and choice_of(found).physics.torsion

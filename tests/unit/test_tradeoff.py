@@ -148,6 +148,13 @@ def test_one_speed_is_named():
     assert title == "steady response at 40 rad/s, number of harmonics"
 
 
+def test_a_motion_that_pulsates_is_measured_without_a_steady_response():
+    moving = replace(HARVESTER, motion=bd.PulsatingRotation(50.0, 0.1, 124.0))
+    found = bd.tradeoff(moving, modes=1, t_end=0.05, budget=0.5)
+    assert any("the steady response is not measured" in said for said in found.warnings)
+    assert not any("steady response" in each.title for each in found.diagrams)
+
+
 def test_nothing_is_measured_where_nothing_moves():
     still = bd.Scene(HARVESTER.beam, bd.Mount(0.0), bd.SteadyRotation(0.0))
     assert integrators_diagram(still, 0.1, 1, budget=0.5).skipped == ("nothing moves the beam",)

@@ -138,7 +138,8 @@ def _as_sentences(name: str) -> Iterator[None]:
 
     def show(message: Warning | str, category: type[Warning], *place: Any) -> None:
         if category is UserWarning:
-            warn(name, [str(message)])
+            # The text itself keeps its wording for files.
+            warn(name, [message.args[0] if isinstance(message, UserWarning) else str(message)])
         else:  # a warning from another package, which only developers need
             usual(message, category, *place)
 

@@ -127,7 +127,10 @@ def list_effects(scene: Scene) -> tuple[list[Addition], dict[str, str], tuple[st
         except InvalidValue as refusal:
             excluded = scene.physics.large_deflection and not effect.bends_in_space
             why = effects.EXCLUSIVE if excluded else str(refusal)
-            not_known[effect.name] = f"give {refusal.other}" if refusal.other else why
+            # A rectangular section, which layers stand on, has its stiffnesses by Poisson's ratio.
+            layered = scene.beam.electrodes is not None and effect.needs
+            lacking = effect.needs[-1] if layered else refusal.other
+            not_known[effect.name] = f"give {lacking}" if refusal.other else why
     not_modelled = [effect.name for effect in left_out if not effect.switch]
     if effects.TORSION in left_out and not can_add(scene, effects.TORSION):
         not_modelled.insert(0, effects.TORSION.name)

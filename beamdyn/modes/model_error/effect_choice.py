@@ -150,7 +150,8 @@ def choose_for_motion(scene: Scene, speeds: np.ndarray, modes: int | None, toler
     Other parameters and the result are as for `choose_physics`.
     """
     tolerance = max(tolerance, PHYSICS_TOLERANCE)
-    return choose_physics(scene, speeds, modes or _MODES, tolerance, in_space=False)
+    needs_space = plain_physics(scene).bends_in_space  # of a curved axis or matrices of sections
+    return choose_physics(scene, speeds, modes or _MODES, tolerance, in_space=needs_space)
 
 
 def plain_physics(scene: Scene) -> Scene:

@@ -23,13 +23,14 @@ from beamdyn.common.inputs.checks import InvalidValue
 from beamdyn.common.parallel.workers import one_blas_thread
 from beamdyn.common.results.statements import unannounced
 from beamdyn.common.spreading.statistics import seeded
-from beamdyn.common.words import Named, Words
+from beamdyn.common.words import Named
 from beamdyn.equations.discretization import Discretization
 from beamdyn.modes.modal.model import Model, kinds_of_modes
 from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.scene.measured_frequencies import MeasuredFrequencies
 from beamdyn.scene.numbers import with_numbers
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import refuse_large_deflection
 from beamdyn.studies.beside_data.free_numbers import FreeNumber, opened
 from beamdyn.studies.beside_data.pairing import NO_MODE, likeness_of, likeness_of_kinds, pair
 from beamdyn.studies.sensitivities.changes import PencilChange, PerturbedModes, equations_near
@@ -40,6 +41,12 @@ _HZ = 1 / (2 * np.pi)
 _MORE_MODES = 3
 _TRIED = 4  # number of trial points (values of all variables) for each start of a fit
 _PAIRINGS = 3  # number of times that measured frequencies are paired again within a fit
+
+
+def _check_linear(scene: Scene) -> None:
+    """Refuse large deflection: before anything is computed, and again where physics "auto" has chosen it."""
+    bound = "a fit needs derivatives, which are computed for linear equations only"
+    refuse_large_deflection(scene, bound, ", or try values by ", Named("bd.study", "beamdyn study"))
 
 
 @dataclass(frozen=True)
@@ -79,12 +86,10 @@ class Fitting:
         A root spring or tip body that the scene lacks is added if one of its parameters is fitted.
         """
         opening = opened(self.scene, [number.path for number in self.numbers])
+        _check_linear(opening)
         with unannounced():
             found = natural_modes(opening, float(np.abs(self.data.speeds).max()), self.modes)
-        if found.scene.physics.large_deflection:
-            remedy = Words("leave it out, or try values by ", Named("bd.study", "beamdyn study"))
-            bound = "a fit needs derivatives, which are computed for linear equations only"
-            raise InvalidValue("physics.large_deflection", True, bound, remedy)
+        _check_linear(found.scene)
         return found
 
     @property

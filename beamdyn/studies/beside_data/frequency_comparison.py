@@ -19,6 +19,7 @@ from beamdyn.common.results.statements import Speeds, joined, unannounced
 from beamdyn.common.words import InputName, Setting, Words, percent
 from beamdyn.modes.locus import frequency_locus
 from beamdyn.modes.modal.model import TORSION
+from beamdyn.modes.modes import natural_modes
 from beamdyn.scene.scene import SceneResult
 from beamdyn.studies.beside_data.single_numbers import OneNumberFit, say_value
 
@@ -198,9 +199,12 @@ class FrequencyComparison(SceneResult):
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the frequencies of the scene over speed, and the measured ones as points."""
         speeds = np.abs(self.speed)
-        top = float(speeds.max()) or _ONE_SPEED * 2 * np.pi * float(np.nanmin(self.measured))
         modes = max(int(self.mode.max()), 1)
         with unannounced():
+            top = float(speeds.max())
+            if not top:  # a range that suits the beam: measured frequencies may be far from its own
+                first = float(np.nan_to_num(natural_modes(self.scene, 0.0, 1).frequency[0]))
+                top = _ONE_SPEED * 2 * np.pi * (first or float(np.nanmin(self.measured)))
             locus = frequency_locus(self.scene, np.linspace(0.0, top, _PLACES), modes)
         ax = plot_locus(locus.speeds, locus.frequency, ax, units=self.display_units)
         per_si = self.display_units.speed_unit().per_si

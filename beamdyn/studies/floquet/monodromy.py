@@ -31,6 +31,7 @@ from beamdyn.scene.motion.rotations import Rotation
 from beamdyn.scene.names_elsewhere import REPEATING
 from beamdyn.scene.numbers import SPEED, with_numbers
 from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import refuse_large_deflection
 from beamdyn.transient.gauss import step_maps, tableau
 from beamdyn.transient.system import ModalSystem
 
@@ -322,14 +323,13 @@ def check_periodic(
         If an argument is out of its range, the motion is not periodic, or large deflection is modelled.
     """
     check_scene(scene)
+    refuse_large_deflection(scene, _STRAIGHT)
     modes = count("modes", modes)
     if scene.chooses_physics:
         extremes = Designs(inputs).extremes() if inputs else [{}]
         each = PeriodicScenes(scene, modes, discretization)
         most = max([_choose_physics(each.at(numbers), modes) for numbers in extremes], key=_needs)
         scene = replace(scene, physics=most.physics, physics_choice=most.physics_choice)
-    if scene.physics.large_deflection:
-        raise InvalidValue("physics.large_deflection", True, _STRAIGHT, "leave it out")
     return PeriodicScenes(scene, modes, discretization)
 
 

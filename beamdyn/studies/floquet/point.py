@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from time import perf_counter
@@ -29,6 +29,8 @@ from beamdyn.studies.floquet.multipliers import STABLE, UNSTABLE, multipliers_of
 
 MULTIPLIERS, EXPONENT = "multipliers", "exponent"
 _ON_CIRCLE = "stability is not decided: multipliers meet, or lie on the unit circle, within their errors"
+# The growth rate has settled if its last change is below this share of its change by more modes in all.
+_SETTLED, _MOST_REFINEMENTS = 0.25, 4
 _BOUNDED = "stability is not decided: the largest exponent is 0 within its error"
 
 
@@ -105,15 +107,36 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
 
     @cached_property
     def mode_error(self) -> float:
-        """Estimated error of the growth rate by neglected modes [1/s], from a solution with more modes.
+        """Estimated error of the growth rate by neglected modes [1/s], from solutions with more modes.
 
-        It is twice the change when the number of modes is increased by half, at least by two; inf if there is
-        no larger model.
+        It is the largest distance from these, plus twice their last change; inf if there is no larger model.
         """
-        finer = ModalBasis(self.modes).refined()
-        if finer is None or self.again is None:
-            return math.inf
-        return 2 * abs(self.again(self.scene, modes=finer.modes).growth_rate - self.growth_rate)
+        rates = [self.growth_rate, *(more.growth_rate for more in self._with_more_modes)]
+        return _span(rates) + 2 * abs(rates[-1] - rates[-2]) if len(rates) > 1 else math.inf
+
+    @cached_property
+    def _with_more_modes(self) -> tuple[FloquetMultipliers, ...]:
+        """Results with more and more modes, until the growth rate settles; empty if there are none.
+
+        Each has half as many modes more, at least two.  A single one may agree by chance, or lack the mode
+        with which a kept one resonates.
+        """
+        found, basis, rates = [], ModalBasis(self.modes).refined(), [self.growth_rate]
+        while basis is not None and self.again is not None and len(found) < _MOST_REFINEMENTS:
+            found.append(self.again(self.scene, modes=basis.modes))
+            rates.append(found[-1].growth_rate)
+            basis = None if abs(rates[-1] - rates[-2]) <= _SETTLED * _span(rates) else basis.refined()
+        return tuple(found)
+
+    def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
+        """List warnings of another verdict with more modes, and those of the model error."""
+        said = "with {0.modes} modes the motion is {0.status}, with a growth rate of {0.growth_rate:.4g} 1/s"
+        verdicts = [
+            Statement(said.format(more), kind=TOLERANCE, quantity="growth rate", value=more.growth_rate)
+            for more in self._with_more_modes[-1:]
+            if {more.status, self.status} == {STABLE, UNSTABLE}
+        ]
+        return verdicts + super().model_warnings(tolerance)
 
     def to_dict(self) -> dict[str, Any]:
         """Convert the result to numbers, lists and strings, including `mode_error`."""
@@ -131,6 +154,11 @@ class FloquetMultipliers(SceneResult, JudgedByRepeating):
         if self.method == EXPONENT:
             return plot_exponent(self.growth_rate, self.growth_rate_error, ax)
         return plot_multipliers(self.multipliers, self.multiplier_errors, self.krein_sign, ax)
+
+
+def _span(rates: Sequence[float]) -> float:
+    """Return the largest distance of growth rates [1/s] from the first."""
+    return max(abs(rate - rates[0]) for rate in rates)
 
 
 @announced_of_plain_beam

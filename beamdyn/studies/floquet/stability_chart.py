@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
+from dataclasses import dataclass, field
+from functools import cached_property, partial
 from os import PathLike
 from time import perf_counter
 from typing import Any, ClassVar
@@ -29,10 +29,11 @@ from beamdyn.common.results.columns import evenly_spread
 from beamdyn.common.results.one_line import counted, error_at_most, warned
 from beamdyn.common.results.pictures import Axes
 from beamdyn.common.results.result import Provenance
-from beamdyn.common.results.snapshots import FieldsOnly
+from beamdyn.common.results.snapshots import ADDED_LATER, FieldsOnly
 from beamdyn.common.results.statements import TOLERANCE, Statement, announced_of_plain_beam, joined
 from beamdyn.common.words import InputName, Words
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
+from beamdyn.modes.modal.model import ModalBasis
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
 from beamdyn.scene.numbers import check_path, unit_of
 from beamdyn.scene.scene import Scene, SceneResult
@@ -84,6 +85,8 @@ class StabilityChart(SceneResult, JudgedByRepeating):
         Period of the equations of motion [s].
     integrated : int
         Number of scenes whose free vibration was integrated; the others were interpolated.
+    modes : int
+        Number of modes at rest of each uncoupled displacement; 0 if it is not known, in files of old.
     warnings : tuple of str
         Warnings about the validity and accuracy of the result.
     provenance : Provenance
@@ -106,6 +109,7 @@ class StabilityChart(SceneResult, JudgedByRepeating):
     spectral_radius: np.ndarray
     period: np.ndarray
     integrated: int
+    modes: int = field(default=0, repr=False, kw_only=True, metadata=ADDED_LATER)
 
     judged_value = "the largest multiplier"
     counted: ClassVar[str] = "place"
@@ -140,6 +144,24 @@ class StabilityChart(SceneResult, JudgedByRepeating):
         """Arguments of a chart with only the values at which the model error is computed."""
         pairs = zip(self.inputs, self._few, strict=True)
         return {"vary": {each.name: each.values[few] for each, few in pairs}}
+
+    def model_warnings(self, tolerance: float | None = None) -> list[Statement]:
+        """List warnings of points with another verdict if there are more modes, and of the model error.
+
+        The points are those at which the model error is computed.
+        """
+        return [*self._other_verdicts, *super().model_warnings(tolerance)]
+
+    @cached_property
+    def _other_verdicts(self) -> tuple[Statement, ...]:
+        basis = ModalBasis(self.modes).refined() if self.modes and self.again is not None else None
+        if basis is None or self.again is None:
+            return ()
+        more = self.again(self.scene, modes=basis.modes, **self.as_far_as_judged).status
+        own = self.status[np.ix_(*self._few)]
+        other = int(((own != more) & (own != UNDECIDED) & (more != UNDECIDED)).sum())
+        said = f"at {other} of {own.size} points the verdict is another one with {basis.modes} modes"
+        return (Statement(f"{said}: give more modes", kind=TOLERANCE, quantity="modes"),) if other else ()
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Draw the growth rate of unstable free vibration, and mark undecided points."""
@@ -212,6 +234,7 @@ def stability_chart(
         inputs=grid.inputs,
         **found,
         integrated=integrated,
+        modes=scenes.modes,
         warnings=(*_warnings(scenes.scene, found["status"]), *run.warnings),
         provenance=Provenance.since(start, method, COARSER),
         scene=scenes.scene,

@@ -12,17 +12,18 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.checks import InvalidValue, NoModelAnswer
+from beamdyn.common.inputs.checks import NoModelAnswer
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import unannounced
-from beamdyn.common.words import Named, Words
+from beamdyn.common.words import Named
 from beamdyn.modes.critical import critical_point
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modes import Modes, natural_modes
 from beamdyn.modes.repeated import repeatable
 from beamdyn.scene.numbers import SPEED
-from beamdyn.scene.scene import Scene
+from beamdyn.scene.scene import Scene, check_scene
+from beamdyn.scene.validity import refuse_large_deflection
 from beamdyn.steady.crossings import Crossing, label_crossing
 from beamdyn.steady.resonance import resonance_speeds
 from beamdyn.studies.sensitivities import sensitivity_result
@@ -88,9 +89,11 @@ def frequency_sensitivities(
     array([-2.,  1.])
     """
     start, names = perf_counter(), sensitivity_result.check_names(inputs)
+    _check_linear(scene)
     with unannounced():
         found = natural_modes(scene, speed, modes, discretization, tolerance)
-    model = _linear(found.model)
+    model = found.model
+    _check_linear(model.scene)
     numbers = sensitivity_result.numbers_of(model.scene, names and [name for name in names if name != SPEED])
     changes = changes_of(model, numbers)
     fine, _ = both = _modes_of(model, found.speed, modes)
@@ -161,11 +164,13 @@ def critical_speed_sensitivities(
     array([[1.]])
     """
     start, names = perf_counter(), sensitivity_result.check_names(inputs)
+    _check_linear(scene)
     with unannounced():
         found = critical_point(scene, discretization, tolerance)
     if found.model is None or not (0 < found.speed < np.inf and np.isfinite(found.error)):
         raise NoModelAnswer(f"there is no critical speed to change: {found.reason}")
-    model = _linear(found.model)
+    model = found.model
+    _check_linear(model.scene)
     numbers = sensitivity_result.numbers_of(model.scene, names)
     changes = changes_of(model, numbers, damped=False)
     speeds = model.solver.critical_speed, model.coarse_solver.critical_speed
@@ -233,10 +238,12 @@ def crossing_sensitivities(
     array([[1., 1.]])
     """
     start, names = perf_counter(), sensitivity_result.check_names(inputs)
+    _check_linear(scene)
     with unannounced():
         crossings = resonance_speeds(scene, top_speed, modes, order, discretization, tolerance)
         scene = crossings.scene.undamped
-        model = _linear(natural_modes(scene, top_speed, modes + 1, discretization, tolerance).model)
+        _check_linear(scene)
+        model = natural_modes(scene, top_speed, modes + 1, discretization, tolerance).model
     numbers = sensitivity_result.numbers_of(scene, names)
     changes = changes_of(model, numbers)
     none = np.zeros((len(numbers), 0))
@@ -263,13 +270,11 @@ def _since(start: float, model: Model) -> Provenance:
 # Frequencies --------------------------------------------------------------------------------------
 
 
-def _linear(model: Model) -> Model:
-    """Return the model; raise an error for large deflection."""
-    if model.scene.physics.large_deflection:
-        bound = "sensitivities are computed for linear equations only"
-        remedy = Words("leave it out, or use ", Named("bd.study", "beamdyn study"))
-        raise InvalidValue("physics.large_deflection", True, bound, remedy)
-    return model
+def _check_linear(scene: Scene) -> None:
+    """Refuse large deflection: before anything is computed, and again where physics "auto" has chosen it."""
+    check_scene(scene)
+    bound = "sensitivities are computed for linear equations only"
+    refuse_large_deflection(scene, bound, ", or use ", Named("bd.study", "beamdyn study"))
 
 
 def _modes_of(model: Model, speed: float, modes: int) -> tuple[PerturbedModes, PerturbedModes]:
