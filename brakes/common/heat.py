@@ -167,8 +167,8 @@ class Fade(Result):
     duty : Duty
         The stops, and the mass that they heat.
     status : str or ndarray of str
-        ``"stops"``; ``"never stops"`` where the lining fades to the torque of the load; ``"too hot"`` past
-        the last temperature of the curve: the numbers from that stop on are nan.
+        ``"stops"``; ``"never stops"`` where the lining fades to the torque of the load, within 5e-13;
+        ``"too hot"`` past the last temperature of the curve: the numbers from that stop on are nan.
     start, end : ndarray
         Temperature before and after each stop [K].
     end_friction : ndarray
@@ -259,7 +259,8 @@ def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
 
 
 _WORDS = {
-    "never stops": "load_torque or a slope exceeds the brake's torque, at once or by fading: it never stops",
+    "never stops": "the brake has no more torque than load_torque or a slope, at once or by fading: it never "
+    "stops",
     "too hot": "the brake gets hotter than the last temperature of friction_curve: extend the curve",
 }
 TorqueAt = Callable[[Numbers], Numbers]
@@ -350,13 +351,14 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
 def _rise_in_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute the temperature rise of a stop [K], nan if it does not end, and the status of the stop."""
     duty, load = path.duty, np.asarray(path.duty.load_torque)
+    weak = load * (1 + LEAST_MARGIN)  # largest torque that is too near the load's torque to stop it
     low = duty.rise_of_a_stop + 0 * start
     most = low / np.maximum(1 - load / path.least(start), _EPS)
     high = np.where(np.isfinite(path.last), path.last - start, most)
 
     def over(rise: np.ndarray) -> np.ndarray:
         """Return whether, up to a rise [K], the stop ends or the torque fades to the load's torque."""
-        return path.stopped(start, rise) | (path.least(start, start + rise) <= load)
+        return path.stopped(start, rise) | (path.least(start, start + rise) <= weak)
 
     # Only a stop with a friction curve can be too hot. Without a curve the stop ends at `high`, but rounding
     # may make over(high) false.
@@ -369,7 +371,7 @@ def _rise_in_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.nda
         ended = np.concatenate([over(grid[1:-1]), np.full((1, *start.shape), True)])
         first = ended.argmax(axis=0)[None]
         low, high = (np.take_along_axis(grid, k, axis=0)[0] for k in (first, first + 1))
-    faded = ~hot & (path.least(start, start + high) <= load)
+    faded = ~hot & (path.least(start, start + high) <= weak)
     status = np.select([~np.isfinite(start), hot, faded], ["stops", "too hot", "never stops"], "stops")
     return np.where(status == "stops", high, np.nan), status
 

@@ -36,6 +36,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
 from brakes.common.locking import LEAST_MARGIN
 from brakes.vehicle.axles import ACUTE, ROUNDING
 from brakes.vehicle.rise import to_rest
@@ -188,7 +189,7 @@ class Stop(Result):
     def limited_by(self) -> Any:
         """What limits the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
-        return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
+        return np.where(self.brake_force >= held * (1 - LEAST_MARGIN), "road", "brake")[()]
 
     @property
     def pulled_distance(self) -> Numbers:
@@ -233,8 +234,6 @@ class Stop(Result):
         each = np.broadcast_to(self.status, (count,)).tolist()
         return {i: _SENTENCES[status] for i, status in enumerate(each) if not status.startswith("stops")}
 
-
-_EDGE = 1e-9  # deceleration relative to the slope's pull that counts as zero
 
 _KINDS = ["too near to decide", "brakes too weak", "never stops", "stops in the rise time"]
 _SENTENCES = {
@@ -295,16 +294,17 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
     h, b = conditions.sense * (y + truck.front_wheel_radius), L - a
     gc, gs = g * np.cos(beta), g * np.sin(beta)
-    locked, standing = M * b * gc / (L + mu * h), M * (b * gc - h * gs) / L
+    left, standing = L + mu * h, M * (b * gc - h * gs) / L
+    locked = np.where(left > 0, M * b * gc / np.where(left > 0, left, 1.0), np.inf)  # inf: they never lock
     locking = truck.front_wheel_radius * mu * locked / 2
     rolls = brakes < locking
     R = np.where(rolls, strongest, mu * locked)
     front = np.where(rolls, (M * b * gc - R * h) / L, locked)
     A = gs - R / M
-    undecided = np.maximum(_EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
+    undecided = np.maximum(EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
     stops, near = -undecided > A, np.abs(A) <= undecided
     in_rise, lost, rise, braking, time = _slow_down(V, A, t2, stops)
-    weak = ~stops & rolls & (gs < mu * locked / M)
+    weak = ~stops & rolls & (gs < mu * locked / M * (1 - EDGE))
     return Stop(
         truck=truck,
         conditions=conditions,
@@ -375,7 +375,7 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions, strongest: Num
     (a, y), mu = truck.cg, np.asarray(conditions.friction)
     least = mu * (y + truck.front_wheel_radius) + LEAST_MARGIN * truck.wheelbase
     limit = a / (y + truck.front_wheel_radius)
-    pressed = strongest >= truck.mass * conditions.gravity * np.cos(conditions.slope) * limit
+    pressed = strongest * (1 + EDGE) >= truck.mass * conditions.gravity * np.cos(conditions.slope) * limit
     bad = (sense < 0) & (a <= least) & pressed
     bound = "braking overturns the truck over the front axle from {limit} on"
     refuse(bad, "friction", mu, "", bound, "give less load, nearer the axle or lower", limit=limit)

@@ -137,6 +137,17 @@ def test_the_smaller_of_brake_and_road_brakes_and_the_change_over_is_exact():
     assert least.acceleration == pytest.approx(locked.acceleration, abs=1e-10)
 
 
+@pytest.mark.parametrize("friction", [0.5, 0.7228915662650602, 0.75, 1.2])
+def test_weak_brakes_do_not_hang_on_a_road_that_no_wheel_of_a_tall_truck_locks_on(friction):
+    """Forwards the front axle presses the harder it brakes: at h = 1.66 m it never locks from L / h on."""
+    truck = vehicle.Truck(2000.0, (0.6, 1.2), 500.0, (-0.3, 2.0), front_wheel_radius=0.3, wheelbase=1.2)
+    c = vehicle.StopConditions(0.05, 4.0, friction, 0.5, 0.3, direction="forward")
+    found = vehicle.stop(truck, c, most_torque=300.0)
+    assert (found.torque_per_brake, found.limited_by) == (300.0, "brake")
+    pull = 9.806 * np.sin(0.05)
+    assert found.acceleration == pytest.approx(pull - 2 * 300.0 / 0.3 / 2500.0, rel=1e-13)
+
+
 def test_the_energy_of_a_stop_is_that_of_speed_and_height():
     rng = np.random.default_rng(5)
     truck, c = trucks(rng), conditions(rng)

@@ -171,7 +171,7 @@ friction_curve = [["20 degC", 0.2], ["60 degC", 0.15]]
             NO_ANSWER,
             "stop 2 of 3: the brake gets hotter than the last temperature of friction_curve",
         ),
-        (("stops = 3", 'load_torque = "700 N m"'), NO_ANSWER, "load_torque or a slope exceeds the brake"),
+        (("stops = 3", 'load_torque = "700 N m"'), NO_ANSWER, "no more torque than load_torque or a slope"),
         (
             ('"20 degC", 0.2', '"20 degC", 0.19'),
             NO_ANSWER,
