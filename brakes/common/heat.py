@@ -28,8 +28,8 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked
-from beamdyn.common.inputs.checks import refuse, set_fields
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, not_negative
+from beamdyn.common.inputs.checks import function, kind, refuse, set_fields
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
@@ -289,7 +289,8 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     Raises
     ------
     ValueError
-        If the brake locks at a friction of the curve.
+        If an argument is of the wrong kind, the friction is negative, or the brake locks at a friction of the
+        curve.
 
     References
     ----------
@@ -301,7 +302,9 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     >>> float(drum.repeat_stops(duty, 0.4, lambda friction: 1000.0 * friction).hottest)  # K
     20.0
     """
-    path = _Warming(duty, friction, torque_at)
+    kind("duty", duty, Duty)
+    function("torque_at", torque_at)
+    path = _Warming(duty, not_negative("friction", friction), torque_at)
     above, stops = path.cases, []  # temperature above the surroundings
     status = np.full(above.shape, "stops", dtype="U11")
     for k in range(int(np.max(duty.stops))):

@@ -179,7 +179,9 @@ class Plates(Ring):
     48.0
     """
 
-    faces: Annotated[Numbers, Described("", "n", "number of pairs of rubbing faces", least=1, whole=True)]
+    faces: Annotated[
+        Numbers, Described("", "n", "number of pairs of rubbing faces", least=1, most=1000, whole=True)
+    ]
     pressure_law: Annotated[Literal["wear", "pressure"], Described(meaning=_LAW)] = "wear"
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:

@@ -114,6 +114,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
     """
     kind("vehicle", vehicle, Vehicle)
     one_of("downhill", downhill, ("front", "rear"))
+    one_of("braked", braked, ("front", "rear", "both"))
     slope = not_negative("slope", slope, "rad")
     together(vehicle=vehicle.cg_height * vehicle.wheelbase, slope=slope)
     return _friction_for(vehicle, np.tan(slope), braked, downhill)

@@ -188,7 +188,7 @@ def hold(
     one_of("downhill", downhill, ("front", "rear"))
     force = (
         brake_force
-        if np.ndim(brake_force) == 0 and brake_force == np.inf
+        if isinstance(brake_force, float) and brake_force == np.inf
         else numbers("brake_force", brake_force, "N")
     )
     refuse(np.asarray(force) < 0, "brake_force", force, "N", "it must be 0 or more")
