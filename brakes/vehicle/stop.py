@@ -186,6 +186,13 @@ class Stop(Result):
         return 2 * self.torque_per_brake / self.truck.front_wheel_radius
 
     @property
+    def locking_torque(self) -> Numbers:
+        """Torque of one brake at which its wheel locks [N m]; inf where the truck would overturn before."""
+        c, truck = self.conditions, self.truck
+        torque = truck.front_wheel_radius * c.friction * _load_that_locks(truck, c) / 2
+        return np.where(_pitches_over(truck, c), np.inf, torque)[()]
+
+    @property
     def limited_by(self) -> Any:
         """What limits the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
@@ -294,8 +301,7 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
     h, b = conditions.sense * (y + truck.front_wheel_radius), L - a
     gc, gs = g * np.cos(beta), g * np.sin(beta)
-    left, standing = L + mu * h, M * (b * gc - h * gs) / L
-    locked = np.where(left > 0, M * b * gc / np.where(left > 0, left, 1.0), np.inf)  # inf: they never lock
+    locked, standing = _load_that_locks(truck, conditions), M * (b * gc - h * gs) / L
     locking = truck.front_wheel_radius * mu * locked / 2
     rolls = brakes < locking
     R = np.where(rolls, strongest, mu * locked)
@@ -324,6 +330,20 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
         standing_front_load=standing[()],
         standing_rear_load=(M * gc - standing)[()],
     )
+
+
+def _load_that_locks(truck: Truck, c: StopConditions) -> np.ndarray:
+    """Compute the front axle's load at which its wheels lock [N]; inf if they never lock."""
+    (a, y), L = truck.cg, truck.wheelbase
+    left = L + c.friction * c.sense * (y + truck.front_wheel_radius)
+    pressed = truck.mass * (L - a) * c.gravity * np.cos(c.slope)
+    return np.where(left > 0, pressed / np.where(left > 0, left, 1.0), np.inf)
+
+
+def _pitches_over(truck: Truck, c: StopConditions) -> Any:
+    """Return whether braking overturns the truck, over its front axle, before the front wheels lock."""
+    (a, y), least = truck.cg, LEAST_MARGIN * np.asarray(truck.wheelbase)
+    return (c.sense < 0) & (a <= c.friction * (y + truck.front_wheel_radius) + least)
 
 
 def _broadcast(truck: Truck, conditions: StopConditions, strongest: Numbers) -> Sequence[np.ndarray]:
@@ -372,10 +392,11 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions, strongest: Num
     ):
         bound = f"the truck overturns on it at rest, over the {axle} axle, past {{limit}}"
         refuse(bad, "slope", slope, "rad", bound, remedy, limit=sense * limit)
-    (a, y), mu = truck.cg, np.asarray(conditions.friction)
-    least = mu * (y + truck.front_wheel_radius) + LEAST_MARGIN * truck.wheelbase
+    a, y = truck.cg
     limit = a / (y + truck.front_wheel_radius)
     pressed = strongest * (1 + EDGE) >= truck.mass * conditions.gravity * np.cos(conditions.slope) * limit
-    bad = (sense < 0) & (a <= least) & pressed
+    bad = _pitches_over(truck, conditions) & pressed
     bound = "braking overturns the truck over the front axle from {limit} on"
-    refuse(bad, "friction", mu, "", bound, "give less load, nearer the axle or lower", limit=limit)
+    remedy = "give less load, nearer the axle or lower"
+    remedy += "" if np.isinf(strongest).all() else ", or press less"
+    refuse(bad, "friction", conditions.friction, "", bound, remedy, limit=limit)

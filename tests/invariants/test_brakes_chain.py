@@ -148,6 +148,21 @@ def test_weak_brakes_do_not_hang_on_a_road_that_no_wheel_of_a_tall_truck_locks_o
     assert found.acceleration == pytest.approx(pull - 2 * 300.0 / 0.3 / 2500.0, rel=1e-13)
 
 
+def test_a_gentle_pedal_stops_a_truck_that_locked_wheels_would_overturn():
+    """Forwards with a load ahead: over the front axle before any wheel locks."""
+    truck = vehicle.Truck(5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89)
+    c = vehicle.StopConditions(0.02, 20 / 3.6, 0.7, 0.5, 0.3, direction="forward")
+    line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    found = chain.brake_from_pedal(truck, c, chain.Pedal(5.0, 60.0), line, 0.728)
+    assert np.array_equal(found.stop.distance, vehicle.stop(truck, c, found.available_torque).distance)
+    assert found.limited_by == "brake" and found.locking_torque == np.inf
+    assert (
+        found.locking.message == "none: the truck would overturn over its front axle before the wheels lock"
+    )
+    with pytest.raises(ValueError, match="or press less"):
+        chain.brake_from_pedal(truck, c, chain.Pedal(5.0, 450.0, booster=3.0), line, 0.728)
+
+
 def test_the_energy_of_a_stop_is_that_of_speed_and_height():
     rng = np.random.default_rng(5)
     truck, c = trucks(rng), conditions(rng)
