@@ -403,7 +403,12 @@ class _Warming:
     def cases(self) -> np.ndarray:
         """Zeros with the shape of the cases, to broadcast with."""
         given = [x for name, x in vars(self.duty).items() if x is not None and name != "friction_curve"]
-        return 0 * sum(given, np.asarray(self.given)) + 0 * self.torque(self.given)
+        return 0 * sum(given, np.asarray(self.given)) + 0 * self.constant
+
+    @cached_property
+    def constant(self) -> np.ndarray:
+        """Torque [N m] at the given friction, which is that at all temperatures if there is no curve."""
+        return self.torque(self.given)
 
     def _along(self, values: np.ndarray) -> np.ndarray:
         """Broadcast values over the cases, along a new first axis."""
@@ -426,8 +431,10 @@ class _Warming:
 
         It occurs at one of them, or at a row of the friction curve.
         """
+        if self.knots is None:
+            return self.constant + 0 * np.asarray(start if end is None else start + np.asarray(end))
         found = [self.friction(each) for each in ((start,) if end is None else (start, end))]
-        if self.knots is not None and end is not None:
+        if end is not None:
             found += [np.where((start < at) & (at < end), mu, found[0]) for at, mu in self.knots]
         return self.torque(np.min(np.broadcast_arrays(*found), axis=0))
 

@@ -146,7 +146,8 @@ class Sliding(Machine):
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
         """Return the linings of the shoes; see `Machine.linings`."""
         leads = self.leads(reverse)
-        return {f"shoe {i + 1}, {_word(each)}": self._shoe(friction, each) for i, each in enumerate(leads)}
+        made = {each: self._shoe(friction, each) for each in dict.fromkeys(leads)}
+        return {f"shoe {i + 1}, {_word(each)}": made[each] for i, each in enumerate(leads)}
 
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
         """Compute pressure / largest pressure on a leading shoe, at angles from straight down [rad]."""
