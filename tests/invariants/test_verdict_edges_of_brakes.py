@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from brakes import calipers, drum, forklift, planar, vehicle
+from brakes import calipers, drum, forklift, machines, planar, vehicle
 from brakes.planar.kinematics import driver_at_travel
 
 PISTON = 11650.0  # N
@@ -145,6 +145,15 @@ def limit_of_stop(torque: float) -> Any:
     return forklift.stop(TRUCK, conditions, torque).limited_by
 
 
+def sticks(friction: float) -> bool:
+    return bool(machines.Cone(0.153, 0.165, width=0.06).remarks(friction, False))
+
+
+def band_of(second_arm: float) -> Any:
+    band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1, second_arm=second_arm)
+    return machines.solve_brake(band, friction=0.0, force=1.0).status
+
+
 def motion_at(brake: forklift.DuoServo) -> Callable[[float], Any]:
     return lambda clearance: len(brake.move_shoes(clearance).right_tip)
 
@@ -177,6 +186,8 @@ def edges() -> Iterator[tuple[str, Callable[[float], Any], float]]:
     yield "slope on which it tips", friction_on, math.atan(0.75)
     locked = forklift.stop(TRUCK, forklift.StopConditions(0.1, 5.0, 0.7, 0.5, 0.3, G))
     yield "torque that locks the wheel", limit_of_stop, float(locked.torque_per_brake)
+    yield "cone that sticks", sticks, 0.2
+    yield "second arm of a band", band_of, 0.1
     yield "load torque as large as the brake's", stops_against_a_load, 400.0
     yield "stroke to a dead centre", stroke_of_piston, TO_DEAD_CENTRE
     yield "travel to a dead centre", driver_of_travel, TO_DEAD_CENTRE
