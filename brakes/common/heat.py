@@ -34,6 +34,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
 from brakes.common.locking import LEAST_MARGIN
 
 _NODES = 20  # nodes of the quadrature between two temperatures of the curve
@@ -249,7 +250,7 @@ class Fade(Result):
 
 def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
     """Compose a warning of pressure times rubbing speed [W/m2] above its limit; empty if no case is above."""
-    if most is None or not np.any(above := np.greater(pv, most)):
+    if most is None or not np.any(above := np.greater(pv, np.multiply(most, 1 + EDGE))):
         return ()
     highest, least = (
         float(end(np.broadcast_to(x, above.shape)[above])) / 1e6 for end, x in ((np.max, pv), (np.min, most))
@@ -392,7 +393,7 @@ class _Warming:
         self.duty, self.given, self.torque_at = duty, friction, torque_at
         curve = duty.friction_curve
         self.knots = None if curve is None else np.asarray(curve)
-        self.last = np.inf if self.knots is None else self.knots[-1, 0]
+        self.last = np.inf if self.knots is None else self.knots[-1, 0] * (1 + LEAST_MARGIN)
         if self.knots is not None:
             values = self.knots[:, 1]
             locks = np.isnan(self.torque(self._along(values)))
@@ -446,7 +447,7 @@ class _Warming:
         if self.knots is None:
             return self.duty.capacity * rise / self.least(start)
         x, weights = _gauss(nodes)
-        bounds = [0.0 * rise, *(np.clip(at - start, 0.0, rise) for at, _ in self.knots[1:])]
+        bounds = [0.0 * rise, *(np.clip(at - start, 0.0, rise) for at, _ in self.knots[1:-1]), rise]
         low, high = np.stack(bounds[:-1]), np.stack(bounds[1:])
         half, middle = (high - low) / 2, (high + low) / 2
         each = x.reshape(-1, *(1,) * half.ndim)  # axes: nodes, parts of the curve, cases

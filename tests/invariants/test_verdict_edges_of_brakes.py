@@ -145,6 +145,17 @@ def limit_of_stop(torque: float) -> Any:
     return forklift.stop(TRUCK, conditions, torque).limited_by
 
 
+def stops_on_a_curve_to(last: float) -> Any:
+    """A stop that warms the brake by 10 K, from 293.15 K."""
+    duty = drum.Duty(20.0, 50.0, 5.0, friction_curve=[[293.15, 0.4], [last, 0.4]])
+    return drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu).status
+
+
+def warned_of_pv(most: float) -> int:
+    duty = drum.Duty(20.0, 50.0, 5.0, most_pv=most)
+    return len(drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu, pv=1e6).warnings)
+
+
 def sticks(friction: float) -> bool:
     return bool(machines.Cone(0.153, 0.165, width=0.06).remarks(friction, False))
 
@@ -188,6 +199,8 @@ def edges() -> Iterator[tuple[str, Callable[[float], Any], float]]:
     yield "torque that locks the wheel", limit_of_stop, float(locked.torque_per_brake)
     yield "cone that sticks", sticks, 0.2
     yield "second arm of a band", band_of, 0.1
+    yield "last temperature of a curve", stops_on_a_curve_to, 303.15
+    yield "largest pressure times speed", warned_of_pv, 1e6
     yield "load torque as large as the brake's", stops_against_a_load, 400.0
     yield "stroke to a dead centre", stroke_of_piston, TO_DEAD_CENTRE
     yield "travel to a dead centre", driver_of_travel, TO_DEAD_CENTRE
