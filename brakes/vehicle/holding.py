@@ -94,7 +94,7 @@ class Holding(Result):
         Normal forces of the axles on this slope, at rest or as the vehicle slips or rolls [N]; nan where it
         tips.
     error : float
-        Bound of the rounding error of the slopes [rad].
+        Bound of the rounding error of the slopes [rad], which grows as the rolling slope nears 90 deg.
 
     Examples
     --------
@@ -226,5 +226,5 @@ def hold(
         braking_force=(pressed * ratio)[()],
         front_load=front[()],
         rear_load=rear[()],
-        error=float(16 * ROUNDING),
+        error=float(16 * ROUNDING / np.cos(np.where(np.isinf(rolls), 0.0, rolls)).min()),
     )

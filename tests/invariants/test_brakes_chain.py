@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -161,6 +162,21 @@ def test_a_gentle_pedal_stops_a_truck_that_locked_wheels_would_overturn():
     )
     with pytest.raises(ValueError, match="or press less"):
         chain.brake_from_pedal(truck, c, chain.Pedal(5.0, 450.0, booster=3.0), line, 0.728)
+
+
+@pytest.mark.parametrize("part", [0.3, 1 - 1e-4, 1 - 3.764597633626465e-09])
+def test_the_stated_error_covers_that_of_a_slope_on_which_a_vehicle_rolls(part):
+    """sin(beta) = R / (M g), in 30 digits: beside 90 deg its rounding counts by 1 / cos(beta)."""
+    mass, gravity = 1893.7313, 9.8061
+    force = np.float64(mass) * gravity * part * (1 + np.arange(-20, 20) * 1e-15)
+    standing, road = vehicle.Vehicle(mass, 0.6, 1.0, 1.5), vehicle.Road(0.1, 0.8, gravity)
+    found = vehicle.hold(standing, road, brake_force=force)
+    with mp.workdps(30):
+        exact = [mp.asin(mpf(float(each)) / (mpf(mass) * mpf(gravity))) for each in force]
+        wrong = [
+            abs(float(x - y)) for x, y in zip(map(mpf, found.rolling_slope.tolist()), exact, strict=True)
+        ]
+    assert max(wrong) < found.error < 1e-9
 
 
 def test_the_energy_of_a_stop_is_that_of_speed_and_height():
