@@ -290,7 +290,7 @@ class BrakedStop(Result):
     available_torque : ndarray
         Torque that each front brake can give at the pedal's force [N m].
     locking_torque : ndarray
-        Torque of each front brake at which its wheel locks [N m].
+        Torque of each front brake at which its wheel locks [N m]; inf where the truck would overturn before.
     locking : Needed
         Force on the pedal at which the wheels just lock [N].
     friction : Needed
@@ -389,13 +389,16 @@ def brake_from_pedal(
     gain = positive("torque_per_force", torque_per_force, "m")
     actuation = actuate(pedal, line)
     available = gain * actuation.actuator_force
-    stopped, locked = stop(truck, conditions, available), stop(truck, conditions)
-    torque = locked.torque_per_brake
+    stopped = stop(truck, conditions, available)
+    torque = np.asarray(stopped.locking_torque)
+    never = np.isinf(torque)
+    locking = force_for(pedal, line, np.where(never, 0.0, torque) / gain)
+    words = "the truck would overturn over its front axle before the wheels lock"
     return BrakedStop(
         actuation,
         stopped,
         available_torque=available,
-        locking_torque=torque,
-        locking=force_for(pedal, line, torque / gain),
+        locking_torque=torque[()],
+        locking=needed(locking.value, (never, words), (np.asarray(locking.reason) != "", locking.reason)),
         friction=friction_to_stop(truck, conditions),
     )

@@ -26,7 +26,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from beamdyn.common.inputs.array_checks import Numbers, keep_checked
-from beamdyn.common.inputs.checks import kind
+from beamdyn.common.inputs.checks import function, kind
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
@@ -153,7 +153,7 @@ def heat_of_stop(
     Raises
     ------
     ValueError
-        If `stop` is no `brakes.vehicle.Stop`.
+        If `stop` is no `brakes.vehicle.Stop`, or `drums` no `Drums`.
 
     References
     ----------
@@ -169,6 +169,7 @@ def heat_of_stop(
     439195
     """
     kind("stop", stop, Stop)
+    kind("drums", drums, Drums | None)
     c, mass = stop.conditions, stop.truck.mass
     pull, V = mass * c.gravity * np.sin(c.slope), np.asarray(c.speed)
     after = V - stop.speed_lost_in_rise
@@ -239,6 +240,8 @@ def fade_of_stops(
     array([53.7, 60.4, 70.1])
     """
     kind("braked", braked, BrakedStop)
+    kind("drums", drums, Drums)
+    function("torque_per_force", torque_per_force)
     stop, force = braked.stop, braked.actuation.actuator_force
     radius, c = stop.truck.front_wheel_radius, stop.conditions
     share = stop.truck.mass / BRAKES

@@ -21,8 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import not_negative, solve_possible
-from beamdyn.common.inputs.checks import InvalidValue, ascending, function, real
+from beamdyn.common.inputs.array_checks import solve_possible
+from beamdyn.common.inputs.checks import InvalidValue, ascending, function, not_negative, real
 from brakes.common.solutions import Gap, Piece, Solutions, WholeSolutions, step
 
 _EPS = np.finfo(float).eps

@@ -28,12 +28,13 @@ from typing import Annotated, Any
 
 import numpy as np
 
-from beamdyn.common.inputs.array_checks import Numbers, keep_checked
-from beamdyn.common.inputs.checks import refuse, set_fields
+from beamdyn.common.inputs.array_checks import Numbers, keep_checked, not_negative
+from beamdyn.common.inputs.checks import function, kind, refuse, set_fields
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
 from brakes.common.locking import LEAST_MARGIN
 
 _NODES = 20  # nodes of the quadrature between two temperatures of the curve
@@ -167,8 +168,8 @@ class Fade(Result):
     duty : Duty
         The stops, and the mass that they heat.
     status : str or ndarray of str
-        ``"stops"``; ``"never stops"`` where the lining fades to the torque of the load; ``"too hot"`` past
-        the last temperature of the curve: the numbers from that stop on are nan.
+        ``"stops"``; ``"never stops"`` where the lining fades to the torque of the load, within 5e-13;
+        ``"too hot"`` past the last temperature of the curve: the numbers from that stop on are nan.
     start, end : ndarray
         Temperature before and after each stop [K].
     end_friction : ndarray
@@ -249,7 +250,7 @@ class Fade(Result):
 
 def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
     """Compose a warning of pressure times rubbing speed [W/m2] above its limit; empty if no case is above."""
-    if most is None or not np.any(above := np.greater(pv, most)):
+    if most is None or not np.any(above := np.greater(pv, np.multiply(most, 1 + EDGE))):
         return ()
     highest, least = (
         float(end(np.broadcast_to(x, above.shape)[above])) / 1e6 for end, x in ((np.max, pv), (np.min, most))
@@ -259,7 +260,8 @@ def warn_of_pv(pv: Numbers, most: Numbers | None) -> tuple[str, ...]:
 
 
 _WORDS = {
-    "never stops": "load_torque or a slope exceeds the brake's torque, at once or by fading: it never stops",
+    "never stops": "the brake has no more torque than load_torque or a slope, at once or by fading: it never "
+    "stops",
     "too hot": "the brake gets hotter than the last temperature of friction_curve: extend the curve",
 }
 TorqueAt = Callable[[Numbers], Numbers]
@@ -288,7 +290,8 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     Raises
     ------
     ValueError
-        If the brake locks at a friction of the curve.
+        If an argument is of the wrong kind, the friction is negative, or the brake locks at a friction of the
+        curve.
 
     References
     ----------
@@ -300,7 +303,9 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
     >>> float(drum.repeat_stops(duty, 0.4, lambda friction: 1000.0 * friction).hottest)  # K
     20.0
     """
-    path = _Warming(duty, friction, torque_at)
+    kind("duty", duty, Duty)
+    function("torque_at", torque_at)
+    path = _Warming(duty, not_negative("friction", friction), torque_at)
     above, stops = path.cases, []  # temperature above the surroundings
     status = np.full(above.shape, "stops", dtype="U11")
     for k in range(int(np.max(duty.stops))):
@@ -350,13 +355,14 @@ def repeat_stops(duty: Duty, friction: Numbers, torque_at: TorqueAt, pv: Numbers
 def _rise_in_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Compute the temperature rise of a stop [K], nan if it does not end, and the status of the stop."""
     duty, load = path.duty, np.asarray(path.duty.load_torque)
+    weak = load * (1 + LEAST_MARGIN)  # largest torque that is too near the load's torque to stop it
     low = duty.rise_of_a_stop + 0 * start
     most = low / np.maximum(1 - load / path.least(start), _EPS)
     high = np.where(np.isfinite(path.last), path.last - start, most)
 
     def over(rise: np.ndarray) -> np.ndarray:
         """Return whether, up to a rise [K], the stop ends or the torque fades to the load's torque."""
-        return path.stopped(start, rise) | (path.least(start, start + rise) <= load)
+        return path.stopped(start, rise) | (path.least(start, start + rise) <= weak)
 
     # Only a stop with a friction curve can be too hot. Without a curve the stop ends at `high`, but rounding
     # may make over(high) false.
@@ -369,7 +375,7 @@ def _rise_in_stop(path: _Warming, start: np.ndarray) -> tuple[np.ndarray, np.nda
         ended = np.concatenate([over(grid[1:-1]), np.full((1, *start.shape), True)])
         first = ended.argmax(axis=0)[None]
         low, high = (np.take_along_axis(grid, k, axis=0)[0] for k in (first, first + 1))
-    faded = ~hot & (path.least(start, start + high) <= load)
+    faded = ~hot & (path.least(start, start + high) <= weak)
     status = np.select([~np.isfinite(start), hot, faded], ["stops", "too hot", "never stops"], "stops")
     return np.where(status == "stops", high, np.nan), status
 
@@ -387,7 +393,7 @@ class _Warming:
         self.duty, self.given, self.torque_at = duty, friction, torque_at
         curve = duty.friction_curve
         self.knots = None if curve is None else np.asarray(curve)
-        self.last = np.inf if self.knots is None else self.knots[-1, 0]
+        self.last = np.inf if self.knots is None else self.knots[-1, 0] * (1 + LEAST_MARGIN)
         if self.knots is not None:
             values = self.knots[:, 1]
             locks = np.isnan(self.torque(self._along(values)))
@@ -398,7 +404,12 @@ class _Warming:
     def cases(self) -> np.ndarray:
         """Zeros with the shape of the cases, to broadcast with."""
         given = [x for name, x in vars(self.duty).items() if x is not None and name != "friction_curve"]
-        return 0 * sum(given, np.asarray(self.given)) + 0 * self.torque(self.given)
+        return 0 * sum(given, np.asarray(self.given)) + 0 * self.constant
+
+    @cached_property
+    def constant(self) -> np.ndarray:
+        """Torque [N m] at the given friction, which is that at all temperatures if there is no curve."""
+        return self.torque(self.given)
 
     def _along(self, values: np.ndarray) -> np.ndarray:
         """Broadcast values over the cases, along a new first axis."""
@@ -421,8 +432,10 @@ class _Warming:
 
         It occurs at one of them, or at a row of the friction curve.
         """
+        if self.knots is None:
+            return self.constant + 0 * np.asarray(start if end is None else start + np.asarray(end))
         found = [self.friction(each) for each in ((start,) if end is None else (start, end))]
-        if self.knots is not None and end is not None:
+        if end is not None:
             found += [np.where((start < at) & (at < end), mu, found[0]) for at, mu in self.knots]
         return self.torque(np.min(np.broadcast_arrays(*found), axis=0))
 
@@ -434,7 +447,7 @@ class _Warming:
         if self.knots is None:
             return self.duty.capacity * rise / self.least(start)
         x, weights = _gauss(nodes)
-        bounds = [0.0 * rise, *(np.clip(at - start, 0.0, rise) for at, _ in self.knots[1:])]
+        bounds = [0.0 * rise, *(np.clip(at - start, 0.0, rise) for at, _ in self.knots[1:-1]), rise]
         low, high = np.stack(bounds[:-1]), np.stack(bounds[1:])
         half, middle = (high - low) / 2, (high + low) / 2
         each = x.reshape(-1, *(1,) * half.ndim)  # axes: nodes, parts of the curve, cases

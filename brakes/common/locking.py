@@ -35,7 +35,11 @@ class SlidesOrLocks(Result):
         """One sentence stating whether the brake slides or locks, and why."""
         locked = np.asarray(self.locked)
         if not locked.any():
-            return "slides: the friction is below self-locking"
+            past = np.asarray(self.friction) > np.asarray(self.locking_friction) * (1 + _NEAR)
+            if not past.any():
+                return "slides: the friction is below self-locking"
+            least = float(np.min(np.broadcast_to(self.locking_friction, past.shape)[past]))
+            return f"slides, but locks in a range of lower friction, from {least:.4g} on"
         where = "" if locked.all() else f" in {int(locked.sum())} of {locked.size} cases"
         mu, least = (np.broadcast_to(x, locked.shape)[locked] for x in (self.friction, self.locking_friction))
         return _say_locked(self.grips, mu, least, where)

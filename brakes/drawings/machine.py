@@ -58,7 +58,8 @@ def factor_chart(result: MachineResult) -> Chart:
     A mark shows the friction at which the brake locks.
     """
     mu, limit = float(result.friction), float(result.locking_friction)
-    top = 0.995 * limit if 0 < limit < LIMIT_SHOWN else max(FRICTION_SHOWN, 1.3 * mu)
+    ends = 0 < limit < LIMIT_SHOWN and (mu <= limit or bool(result.locked))
+    top = 0.995 * limit if ends else max(FRICTION_SHOWN, 1.3 * mu)
     at = np.linspace(1e-3 * top, top, _POINTS)
     ways = [solve_brake(result.brake, friction=at, force=1.0, reverse=way) for way in (False, True)]
     curves = [
@@ -67,12 +68,13 @@ def factor_chart(result: MachineResult) -> Chart:
     ]
     own = curves[result.reverse]
     marks = [ChartMark(mu, f"{mu:g}", at_foot=True)]
-    if 0 < limit < LIMIT_SHOWN:
+    if ends:
         marks.append(ChartMark(limit, f"locks at {limit:.3g}", curve=own.name))
     # C* grows without bound towards locking: the range of its axis follows from C* at a lower friction.
-    near = float(np.interp(min(mu, 0.6 * top, 0.6 * limit), at, own.y))
-    grows = any(np.isfinite(way.locking_friction).any() for way in ways)
-    return over_friction("Brake factor", curves, marks, near if grows else None)
+    known = np.isfinite(own.y)
+    grows = known.any() and any(np.isfinite(way.locking_friction).any() for way in ways)
+    near = float(np.interp(min(mu, 0.6 * top), at[known], own.y[known])) if grows else None
+    return over_friction("Brake factor", curves, marks, near)
 
 
 def over_friction(

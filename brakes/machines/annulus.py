@@ -13,6 +13,7 @@ from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import one_of, refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from brakes.common.locking import LEAST_MARGIN
 from brakes.machines.machine import Lining, Machine
 
 _LAW = "wear: worn-in lining, pressure as 1 / radius; pressure: new lining, the same pressure everywhere"
@@ -179,7 +180,9 @@ class Plates(Ring):
     48.0
     """
 
-    faces: Annotated[Numbers, Described("", "n", "number of pairs of rubbing faces", least=1, whole=True)]
+    faces: Annotated[
+        Numbers, Described("", "n", "number of pairs of rubbing faces", least=1, most=1000, whole=True)
+    ]
     pressure_law: Annotated[Literal["wear", "pressure"], Described(meaning=_LAW)] = "wear"
 
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
@@ -247,7 +250,7 @@ class Cone(Ring):
 
     def remarks(self, friction: Numbers, reverse: bool) -> Sequence[str]:
         """Return a sentence if the cone sticks in its cup when the force is gone."""
-        sticks = np.asarray(friction >= self.taper)
+        sticks = np.asarray(friction >= self.taper * (1 - LEAST_MARGIN))
         if not sticks.any():
             return ()
         least = float(np.min(np.broadcast_to(self.taper, sticks.shape)[sticks]))

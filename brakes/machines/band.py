@@ -13,6 +13,7 @@ from beamdyn.common.inputs.array_checks import Numbers
 from beamdyn.common.inputs.checks import refuse
 from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
+from brakes.common.locking import LEAST_MARGIN
 from brakes.machines.machine import Lining, Machine
 
 _FIRST = "arm about the fulcrum of the band's first end, which the force on the lever pulls"
@@ -85,7 +86,7 @@ class Band(Machine):
     def check(self) -> None:
         """Check that the lever tightens the band."""
         bound = "it must be below {other}, {limit}: otherwise the lever loosens the band"
-        bad = np.asarray(self.second_arm) >= self.first_arm
+        bad = np.asarray(self.second_arm) >= self.first_arm * (1 - LEAST_MARGIN)
         remedy = "exchange the two ends, or shorten it"
         refuse(
             bad, "second_arm", self.second_arm, "m", bound, remedy, limit=self.first_arm, other="first_arm"

@@ -169,8 +169,8 @@ class Block(Machine):
         Here b is `block_arm` and h the `height`. Under wear the pressure is in proportion to this.
         """
         towards = np.abs(np.arctan2(self.height, self.block_arm))  # angle of the maximum of b cos x + h sin x
-        past = np.maximum(towards - np.asarray(self.block_angle) / 2, 0.0)
-        return np.hypot(self.block_arm, self.height) * np.cos(past)
+        at = np.minimum(towards, np.asarray(self.block_angle) / 2)
+        return self.block_arm * np.cos(at) + np.abs(self.height) * np.sin(at)
 
     def reach(self) -> tuple[Numbers, Numbers]:
         """Return the angles of the block's ends from its middle [rad], first the end at the fulcrum."""

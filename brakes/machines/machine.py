@@ -298,7 +298,7 @@ def solve_brake(
         c_star_slope=(slope / radius)[()],
         radius=radius[()],
         locking_friction=limit[()],
-        margin=(1 - mu / limit)[()],
+        margin=(1 - np.divide(mu, limit, out=np.full(limit.shape, np.inf), where=limit > 0))[()],
         locked=locked[()],
         error=_ROUNDINGS * _EPS * worst,
         linings=parts,

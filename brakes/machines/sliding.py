@@ -30,10 +30,10 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from brakes.machines.machine import Lining, Machine
 
-# Numbers of bisections. The first reduces a step of friction to its rounding. The second reduces an angle
-# below 2 pi to 1e-10; a Newton step then squares this error.
+# Numbers of bisections, which reduce a step of angles to its rounding, and an angle below 2 pi to 1e-10; a
+# Newton step then squares this error.
 _HALVINGS, _HALVINGS_OF_ANGLE = 52, 36
-_FRICTIONS = np.linspace(0.0, 3.0, 61)  # friction coefficients among which self-locking is sought
+_ANGLES, _MOST = 361, 3.0  # angles among which self-locking is sought, and largest friction
 # Angle of contact [rad] below which the lining counts as touching only at its edge, where the shoe has no
 # equilibrium.
 _LEAST_CONTACT = 1e-3
@@ -146,7 +146,8 @@ class Sliding(Machine):
     def linings(self, friction: Numbers, reverse: bool) -> Mapping[str, Lining]:
         """Return the linings of the shoes; see `Machine.linings`."""
         leads = self.leads(reverse)
-        return {f"shoe {i + 1}, {_word(each)}": self._shoe(friction, each) for i, each in enumerate(leads)}
+        made = {each: self._shoe(friction, each) for each in dict.fromkeys(leads)}
+        return {f"shoe {i + 1}, {_word(each)}": made[each] for i, each in enumerate(leads)}
 
     def pressure(self, at: Numbers, friction: Numbers) -> Numbers:
         """Compute pressure / largest pressure on a leading shoe, at angles from straight down [rad]."""
@@ -195,33 +196,39 @@ class Sliding(Machine):
         return {leads: self._locking(leads) for leads in (True, False)}
 
     def _locking(self, leads: bool) -> Numbers:
-        """Find by bisection the smallest friction at which the actuating force is not positive.
+        """Find the smallest friction at which the actuating force is not positive.
 
-        Where no distribution of pressure balances the shoe, the force is nan; that does not count as locking.
+        The balance is linear in the friction, so that each angle of zero pressure belongs to one friction.
+        Angles are sampled, not frictions: a range of frictions that lock, however narrow, between those
+        without equilibrium and those that slide, is wide in angles. Its ends are found by bisection. A shoe
+        that locks without friction has a locking friction of 0.
         """
-
-        def holds(mu: np.ndarray) -> np.ndarray:
-            return ~(self._force(mu, leads) <= 0)
-
-        numbers = (value for value in vars(self).values() if not isinstance(value, str | Mapping))
-        shape = np.broadcast_shapes(*map(np.shape, numbers))
-        grid = _FRICTIONS.reshape(-1, *(1,) * len(shape)) + np.zeros(shape)
-        free = np.logical_and.accumulate(holds(grid), axis=0)
-        low = _FRICTIONS[np.maximum(free.sum(axis=0) - 1, 0)]
-        high = low + _FRICTIONS[1]
+        s = -1.0 if leads else 1.0
+        flat = 0.0 * (self._weight(self.lining_start, 0.0, s) + self._weight(self.lining_end, 0.0, s))
+        low, high = self.lining_start - np.pi + _LEAST_CONTACT + flat, self.lining_end - _LEAST_CONTACT + flat
+        delta = np.linspace(low, high, _ANGLES)
+        mu, locks = self._lock_at(delta, s)
+        best = np.argmin(np.where(locks, mu, np.inf), axis=0)[None]
+        inside = np.take_along_axis(delta, best, axis=0)
+        outside = np.concatenate(
+            [np.take_along_axis(delta, np.clip(best + k, 0, _ANGLES - 1), axis=0) for k in (-1, 1)]
+        )
         for _ in range(_HALVINGS):
-            middle = (low + high) / 2
-            fine = holds(middle)
-            low, high = np.where(fine, middle, low), np.where(fine, high, middle)
-        return np.where(free.all(axis=0), np.inf, high)
+            middle = (inside + outside) / 2
+            found = self._lock_at(middle, s)[1]
+            inside, outside = np.where(found, middle, inside), np.where(found, outside, middle)
+        least = np.where(locks.any(axis=0), self._lock_at(inside, s)[0].min(axis=0), np.inf)
+        without = self._moment(self._integrals(self.zero(np.asarray(0.0), leads)), 0.0, s)
+        return np.where(without <= 0, 0.0, least)
 
-    def _force(self, mu: np.ndarray, leads: bool) -> np.ndarray:
-        """Compute the actuating force, divided by the product of width, radius and pressure scale p0.
-
-        The result is nan where no distribution of pressure keeps the shoe in equilibrium.
-        """
-        s, delta = -1.0 if leads else 1.0, self.zero(mu, leads)
-        return self._moment(self._integrals(delta), mu, s) / self.arm
+    def _lock_at(self, delta: np.ndarray, s: float) -> tuple[np.ndarray, np.ndarray]:
+        """Compute the friction of angles of zero pressure, and whether it keeps the shoe, which locks."""
+        found = self._integrals(delta)
+        balance = self._balance(found, 1j, s)  # its parts belong to the friction's powers 0 and 1
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mu = -balance.real / balance.imag
+            held = self._weight(self.lining_start, mu, s) * self._weight(self.lining_end, mu, s) < 0
+            return mu, held & (mu >= 0) & (mu <= _MOST) & (self._moment(found, mu, s) <= 0)
 
     def _shoe(self, mu: Numbers, leads: bool) -> Lining:
         """Make the lining of one shoe."""

@@ -115,7 +115,7 @@ class Vehicle:
         """
         sense = 1 if axle == leading else -1
         left = share * self.wheelbase - sense * friction * self.cg_height
-        locks = (np.asarray(share) > 0) & (left > 0)
+        locks = (np.asarray(share) > LEAST_MARGIN) & (left > LEAST_MARGIN * self.wheelbase)
         return np.where(locks, friction * self.arm(axle) / np.where(locks, left, 1.0), np.inf)[()]
 
     def slipping_ratio(self, friction: Numbers, braked: Braked, leading: Axle) -> Numbers:

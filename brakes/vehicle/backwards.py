@@ -25,6 +25,8 @@ from beamdyn.common.inputs.checks import kind, one_of
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
+from brakes.common.locking import LEAST_MARGIN
 from brakes.vehicle.axles import Axle, Braked, Truck, Vehicle, other
 from brakes.vehicle.stop import StopConditions
 
@@ -111,6 +113,7 @@ def friction_to_hold(vehicle: Vehicle, slope: Numbers, braked: Braked, downhill:
     """
     kind("vehicle", vehicle, Vehicle)
     one_of("downhill", downhill, ("front", "rear"))
+    one_of("braked", braked, ("front", "rear", "both"))
     slope = not_negative("slope", slope, "rad")
     together(vehicle=vehicle.cg_height * vehicle.wheelbase, slope=slope)
     return _friction_for(vehicle, np.tan(slope), braked, downhill)
@@ -160,7 +163,7 @@ def friction_to_stop(truck: Truck, conditions: StopConditions, distance: Numbers
     together(truck=truck.cg[0] + truck.cg[1] + truck.wheelbase, distance=left, **c.numbers)
     ratio = np.tan(c.slope) + _deceleration(c, left) / (c.gravity * np.cos(c.slope))
     found = _friction_for(truck.vehicle, ratio, "front", "rear" if c.sense > 0 else "front")
-    late = np.asarray(left) <= 0
+    late = np.asarray(left) <= EDGE * c.speed * np.asarray(c.reaction_time)
     words = "the distance is covered in the reaction time"
     return needed(found.value, (late, words), (np.asarray(found.reason) != "", np.asarray(found.reason)))
 
@@ -168,13 +171,14 @@ def friction_to_stop(truck: Truck, conditions: StopConditions, distance: Numbers
 def _friction_for(vehicle: Vehicle, ratio: Numbers, braked: Braked, leading: Axle) -> Needed:
     """Find the tyre friction that a braking ratio needs at the braked axles."""
     share = 1.0 + 0.0 * ratio if braked == "both" else vehicle.load_share(braked, ratio, leading)
-    lifted = vehicle.load_share(other(leading), ratio, leading) <= 0
+    lifted = vehicle.load_share(other(leading), ratio, leading) <= LEAST_MARGIN
     lifted &= braked != other(leading)  # a braked upper axle slips before its load falls to 0
     with np.errstate(divide="ignore", invalid="ignore"):
         friction = np.maximum(ratio, 0.0) / np.where(share > 0, share, np.nan)
     much = f"even a friction of {MOST_FRICTION:g}, the largest that is accepted, is too low"
     tips = "the vehicle tips over its lower axle, whatever the friction"
-    return needed(friction, (lifted, tips), (~(friction <= MOST_FRICTION), much))
+    much_friction = ~(friction <= MOST_FRICTION * (1 + EDGE))
+    return needed(np.minimum(friction, MOST_FRICTION), (lifted, tips), (much_friction, much))
 
 
 def _deceleration(c: StopConditions, left: Numbers) -> Numbers:

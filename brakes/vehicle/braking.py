@@ -16,9 +16,8 @@ from beamdyn.common.inputs.checks import kind, one_of, refuse
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
 from brakes.vehicle.axles import Axle, Vehicle
-
-_EDGE = 1e-9  # relative difference of two limits below which they count as equal
 
 
 @dataclass(frozen=True)
@@ -132,8 +131,8 @@ def braking_limits(
     front, rear, pitching = np.broadcast_arrays(front, rear, pitching)
     lock = np.minimum(front, rear)
     with np.errstate(invalid="ignore"):
-        equal = np.abs(front - rear) <= _EDGE * lock
-    kinds = [lock >= pitching * (1 - _EDGE), equal, front < rear]
+        equal = np.abs(front - rear) <= EDGE * lock
+    kinds = [lock >= pitching * (1 - EDGE), equal, front < rear]
     return Braking(
         vehicle,
         mu,

@@ -22,10 +22,10 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
+from brakes.common.locking import LEAST_MARGIN
 from brakes.vehicle.axles import ROUNDING, Axle, Braked, Vehicle
 from brakes.vehicle.stop import STANDARD_GRAVITY, STEEPEST, SlopeAngle
-
-_EDGE = 1e-9  # relative difference of two slopes below which the status is undecided
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Holding(Result):
         Normal forces of the axles on this slope, at rest or as the vehicle slips or rolls [N]; nan where it
         tips.
     error : float
-        Bound of the rounding error of the slopes [rad].
+        Bound of the rounding error of the slopes [rad], which grows as the rolling slope nears 90 deg.
 
     Examples
     --------
@@ -128,7 +128,7 @@ class Holding(Result):
     def limited_by(self) -> Any:
         """Motion of the vehicle on a steeper slope: "slips", "tips" or "rolls"."""
         ends = np.stack(np.broadcast_arrays(self.slipping_slope, self.tipping_slope, self.rolling_slope))
-        return np.array(["slips", "tips", "rolls"])[np.argmin(ends, axis=0)]
+        return np.array(["slips", "tips", "rolls"])[np.argmax(ends <= ends.min(axis=0) * (1 + EDGE), axis=0)]
 
     @property
     def message(self) -> str:
@@ -188,7 +188,7 @@ def hold(
     one_of("downhill", downhill, ("front", "rear"))
     force = (
         brake_force
-        if np.ndim(brake_force) == 0 and brake_force == np.inf
+        if isinstance(brake_force, float) and brake_force == np.inf
         else numbers("brake_force", brake_force, "N")
     )
     refuse(np.asarray(force) < 0, "brake_force", force, "N", "it must be 0 or more")
@@ -197,18 +197,21 @@ def hold(
     grip, pitching = vehicle.slipping_ratio(road.friction, braked, downhill), vehicle.pitching_ratio(downhill)
     slips = np.arctan(grip)
     tips = np.arctan(pitching) if braked in (downhill, "both") else np.inf
-    rolls = np.where(np.asarray(force) < weight, np.arcsin(np.minimum(force / weight, 1.0)), np.inf)
+    rolls = np.where(
+        np.asarray(force) < weight * (1 - EDGE), np.arcsin(np.minimum(force / weight, 1.0)), np.inf
+    )
     slips, tips, rolls, slope = np.broadcast_arrays(slips, tips, rolls, road.slope)
     most = np.minimum(np.minimum(slips, tips), rolls)
-    near = np.abs(slope - most) <= _EDGE * most
+    near = np.abs(slope - most) <= EDGE * most
     pressed = weight * np.cos(slope)
     given = np.minimum(grip, force / pressed)  # braking ratio of a vehicle that slides or rolls
     ratio = np.minimum(np.tan(slope), given)
-    kinds = [near, slope < most, ratio > pitching * (1 + _EDGE), grip <= given]
+    kinds = [near, slope < most, ratio > pitching * (1 + EDGE), grip <= given]
     status = np.select(kinds, ["too near to decide", "holds", "tips", "slips"], default="rolls")
     shares = [vehicle.load_share(axle, ratio, downhill) for axle in ("front", "rear")]
-    pressed = np.where(np.minimum(*shares) >= 0, pressed, np.nan)  # no equilibrium while the vehicle tips
-    front, rear = (pressed * each for each in shares)
+    stands = np.minimum(*shares) >= -LEAST_MARGIN
+    pressed = np.where(stands, pressed, np.nan)  # no equilibrium while the vehicle tips
+    front, rear = (pressed * np.maximum(each, 0.0) for each in shares)
     return Holding(
         vehicle=vehicle,
         road=road,
@@ -223,5 +226,5 @@ def hold(
         braking_force=(pressed * ratio)[()],
         front_load=front[()],
         rear_load=rear[()],
-        error=float(16 * ROUNDING),
+        error=float(16 * ROUNDING / np.cos(np.where(np.isinf(rolls), 0.0, rolls)).min()),
     )

@@ -54,7 +54,8 @@ def to_rest(
     slowing = np.where(stops, r - p, 1.0)
     full_time, full_way = t2 + after / slowing, V * t2 + (p / 2 - r / 6) * t2**2 + after**2 / (2 * slowing)
     with np.errstate(divide="ignore", invalid="ignore"):
-        rising = t2 / r * (p + np.sqrt(p**2 + 2 * r * V / t2))  # root of V + p t - r t^2 / (2 t2) = 0
+        root = np.sqrt(p**2 + 2 * r * V / t2)  # of V + p t - r t^2 / (2 t2) = 0; no sum below cancels
+        rising = np.where(p < 0, 2 * V / (root - p), t2 / r * (p + root))
         rising_way = V * rising + p * rising**2 / 2 - r * rising**3 / (6 * t2)
     in_rise = after < 0
     way, time = np.where(in_rise, rising_way, full_way), np.where(in_rise, rising, full_time)

@@ -28,11 +28,11 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned, warned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
 from brakes.vehicle.axles import Axle, Vehicle, other
 from brakes.vehicle.holding import Road
 from brakes.vehicle.rise import coast, to_rest
 
-_EDGE = 1e-9  # relative difference of two ratios or accelerations below which they count as equal
 _STATES = ("no wheel locks", "front wheels locked", "rear wheels locked", "all wheels locked")
 _PITCHES = "at the limit of pitching over"
 
@@ -152,7 +152,7 @@ class Slowing(Result):
         with np.errstate(divide="ignore", invalid="ignore"):  # the rise time may be 0
             risen = np.where(since < a.rise_time, np.maximum(since, 0.0) / a.rise_time, since >= 0)
         held = self.ratio * np.cos(self.road.slope) * risen
-        rolls = (a.heading == "uphill") & (held < np.sin(self.road.slope) * (1 - _EDGE))
+        rolls = (a.heading == "uphill") & (held < np.sin(self.road.slope) * (1 - EDGE))
         many = f", in {np.sum(rolls)} of {rolls.size} cases" if rolls.ndim else ""
         said = "the vehicle stops before its brakes hold it, and rolls back until they do (not counted)"
         return (f"{said}{many}",) if np.any(rolls) else ()
@@ -230,7 +230,7 @@ def slow_down(
     eased = ratio / sum(forces.values())  # below 1 only where the driver eases off to avoid pitching over
     pull = road.gravity * np.sin(road.slope) * (1 if approach.heading == "downhill" else -1)
     rate = road.gravity * np.cos(road.slope) * ratio
-    stops = rate - pull > _EDGE * rate
+    stops = rate - pull > EDGE * rate
     coasted, reaction, speed = coast(approach.speed, pull, approach.reaction_time)
     way, time = to_rest(speed, pull, rate, approach.rise_time, stops)
     return Slowing(
@@ -263,7 +263,7 @@ def _ratio(vehicle: Vehicle, friction: Numbers, braked: dict[Axle, Any], leading
     sums = np.stack(np.broadcast_arrays(rolling, *locked, friction))
     least, pitching = sums.min(axis=0), vehicle.pitching_ratio(leading)
     # Of states with the same braking ratio within rounding, the one with the fewest locked wheels is chosen.
-    first = np.argmax(sums <= least * (1 + _EDGE), axis=0)
-    lifts = least >= pitching * (1 - _EDGE)
+    first = np.argmax(sums <= least * (1 + EDGE), axis=0)
+    lifts = least >= pitching * (1 - EDGE)
     status = np.where(lifts, _PITCHES, np.array(_STATES)[first])
     return np.minimum(least, pitching)[()], status[()]

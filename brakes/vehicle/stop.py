@@ -36,6 +36,7 @@ from beamdyn.common.inputs.described import Described
 from beamdyn.common.results.columns import Meaning
 from beamdyn.common.results.one_line import spanned
 from beamdyn.common.results.result import Result
+from brakes.common.limits import EDGE
 from brakes.common.locking import LEAST_MARGIN
 from brakes.vehicle.axles import ACUTE, ROUNDING, Truck
 from brakes.vehicle.rise import to_rest
@@ -184,10 +185,17 @@ class Stop(Result):
         return 2 * self.torque_per_brake / self.truck.front_wheel_radius
 
     @property
+    def locking_torque(self) -> Numbers:
+        """Torque of one brake at which its wheel locks [N m]; inf where the truck would overturn before."""
+        c, truck = self.conditions, self.truck
+        torque = truck.front_wheel_radius * c.friction * _load_that_locks(truck, c) / 2
+        return np.where(_pitches_over(truck, c), np.inf, torque)[()]
+
+    @property
     def limited_by(self) -> Any:
         """What limits the braking force: "road" where the front wheels lock, else "brake"."""
         held = self.conditions.friction * self.front_load
-        return np.where(self.brake_force >= held * (1 - 4 * ROUNDING), "road", "brake")[()]
+        return np.where(self.brake_force >= held * (1 - LEAST_MARGIN), "road", "brake")[()]
 
     @property
     def pulled_distance(self) -> Numbers:
@@ -232,8 +240,6 @@ class Stop(Result):
         each = np.broadcast_to(self.status, (count,)).tolist()
         return {i: _SENTENCES[status] for i, status in enumerate(each) if not status.startswith("stops")}
 
-
-_EDGE = 1e-9  # deceleration relative to the slope's pull that counts as zero
 
 _KINDS = ["too near to decide", "brakes too weak", "never stops", "stops in the rise time"]
 _SENTENCES = {
@@ -294,16 +300,16 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
     (a, y), L, M = truck.cg, truck.wheelbase, truck.mass
     h, b = conditions.sense * (y + truck.front_wheel_radius), L - a
     gc, gs = g * np.cos(beta), g * np.sin(beta)
-    locked, standing = M * b * gc / (L + mu * h), M * (b * gc - h * gs) / L
+    locked, standing = _load_that_locks(truck, conditions), M * (b * gc - h * gs) / L
     locking = truck.front_wheel_radius * mu * locked / 2
     rolls = brakes < locking
     R = np.where(rolls, strongest, mu * locked)
     front = np.where(rolls, (M * b * gc - R * h) / L, locked)
     A = gs - R / M
-    undecided = np.maximum(_EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
+    undecided = np.maximum(EDGE, 4 * _rounding(truck, conditions)) * g * np.abs(np.sin(beta))
     stops, near = -undecided > A, np.abs(A) <= undecided
     in_rise, lost, rise, braking, time = _slow_down(V, A, t2, stops)
-    weak = ~stops & rolls & (gs < mu * locked / M)
+    weak = ~stops & rolls & (gs < mu * locked / M * (1 - EDGE))
     return Stop(
         truck=truck,
         conditions=conditions,
@@ -323,6 +329,20 @@ def stop(truck: Truck, conditions: StopConditions, most_torque: Numbers | None =
         standing_front_load=standing[()],
         standing_rear_load=(M * gc - standing)[()],
     )
+
+
+def _load_that_locks(truck: Truck, c: StopConditions) -> np.ndarray:
+    """Compute the front axle's load at which its wheels lock [N]; inf if they never lock."""
+    (a, y), L = truck.cg, truck.wheelbase
+    left = L + c.friction * c.sense * (y + truck.front_wheel_radius)
+    pressed = truck.mass * (L - a) * c.gravity * np.cos(c.slope)
+    return np.where(left > 0, pressed / np.where(left > 0, left, 1.0), np.inf)
+
+
+def _pitches_over(truck: Truck, c: StopConditions) -> Any:
+    """Return whether braking overturns the truck, over its front axle, before the front wheels lock."""
+    (a, y), least = truck.cg, LEAST_MARGIN * np.asarray(truck.wheelbase)
+    return (c.sense < 0) & (a <= c.friction * (y + truck.front_wheel_radius) + least)
 
 
 def _broadcast(truck: Truck, conditions: StopConditions, strongest: Numbers) -> Sequence[np.ndarray]:
@@ -371,10 +391,11 @@ def _refuse_overturning(truck: Truck, conditions: StopConditions, strongest: Num
     ):
         bound = f"the truck overturns on it at rest, over the {axle} axle, past {{limit}}"
         refuse(bad, "slope", slope, "rad", bound, remedy, limit=sense * limit)
-    (a, y), mu = truck.cg, np.asarray(conditions.friction)
-    least = mu * (y + truck.front_wheel_radius) + LEAST_MARGIN * truck.wheelbase
+    a, y = truck.cg
     limit = a / (y + truck.front_wheel_radius)
-    pressed = strongest >= truck.mass * conditions.gravity * np.cos(conditions.slope) * limit
-    bad = (sense < 0) & (a <= least) & pressed
+    pressed = strongest * (1 + EDGE) >= truck.mass * conditions.gravity * np.cos(conditions.slope) * limit
+    bad = _pitches_over(truck, conditions) & pressed
     bound = "braking overturns the truck over the front axle from {limit} on"
-    refuse(bad, "friction", mu, "", bound, "give less load, nearer the axle or lower", limit=limit)
+    remedy = "give less load, nearer the axle or lower"
+    remedy += "" if np.isinf(strongest).all() else ", or press less"
+    refuse(bad, "friction", conditions.friction, "", bound, remedy, limit=limit)

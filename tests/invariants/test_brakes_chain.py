@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -135,6 +136,47 @@ def test_the_smaller_of_brake_and_road_brakes_and_the_change_over_is_exact():
     least = vehicle.stop(truck, c, locked.torque_per_brake * (1 - 1e-12))
     assert np.all(least.limited_by == "brake")
     assert least.acceleration == pytest.approx(locked.acceleration, abs=1e-10)
+
+
+@pytest.mark.parametrize("friction", [0.5, 0.7228915662650602, 0.75, 1.2])
+def test_weak_brakes_do_not_hang_on_a_road_that_no_wheel_of_a_tall_truck_locks_on(friction):
+    """Forwards the front axle presses the harder it brakes: at h = 1.66 m it never locks from L / h on."""
+    truck = vehicle.Truck(2000.0, (0.6, 1.2), 500.0, (-0.3, 2.0), front_wheel_radius=0.3, wheelbase=1.2)
+    c = vehicle.StopConditions(0.05, 4.0, friction, 0.5, 0.3, direction="forward")
+    found = vehicle.stop(truck, c, most_torque=300.0)
+    assert (found.torque_per_brake, found.limited_by) == (300.0, "brake")
+    pull = 9.806 * np.sin(0.05)
+    assert found.acceleration == pytest.approx(pull - 2 * 300.0 / 0.3 / 2500.0, rel=1e-13)
+
+
+def test_a_gentle_pedal_stops_a_truck_that_locked_wheels_would_overturn():
+    """Forwards with a load ahead: over the front axle before any wheel locks."""
+    truck = vehicle.Truck(5950, (1.049, 0.359), 3500, (-1.20, 0.450), front_wheel_radius=0.40, wheelbase=1.89)
+    c = vehicle.StopConditions(0.02, 20 / 3.6, 0.7, 0.5, 0.3, direction="forward")
+    line = chain.HydraulicLine(master_bore=0.02222, cylinder_bore=0.03175)
+    found = chain.brake_from_pedal(truck, c, chain.Pedal(5.0, 60.0), line, 0.728)
+    assert np.array_equal(found.stop.distance, vehicle.stop(truck, c, found.available_torque).distance)
+    assert found.limited_by == "brake" and found.locking_torque == np.inf
+    assert (
+        found.locking.message == "none: the truck would overturn over its front axle before the wheels lock"
+    )
+    with pytest.raises(ValueError, match="or press less"):
+        chain.brake_from_pedal(truck, c, chain.Pedal(5.0, 450.0, booster=3.0), line, 0.728)
+
+
+@pytest.mark.parametrize("part", [0.3, 1 - 1e-4, 1 - 3.764597633626465e-09])
+def test_the_stated_error_covers_that_of_a_slope_on_which_a_vehicle_rolls(part):
+    """sin(beta) = R / (M g), in 30 digits: beside 90 deg its rounding counts by 1 / cos(beta)."""
+    mass, gravity = 1893.7313, 9.8061
+    force = np.float64(mass) * gravity * part * (1 + np.arange(-20, 20) * 1e-15)
+    standing, road = vehicle.Vehicle(mass, 0.6, 1.0, 1.5), vehicle.Road(0.1, 0.8, gravity)
+    found = vehicle.hold(standing, road, brake_force=force)
+    with mp.workdps(30):
+        exact = [mp.asin(mpf(float(each)) / (mpf(mass) * mpf(gravity))) for each in force]
+        wrong = [
+            abs(float(x - y)) for x, y in zip(map(mpf, found.rolling_slope.tolist()), exact, strict=True)
+        ]
+    assert max(wrong) < found.error < 1e-9
 
 
 def test_the_energy_of_a_stop_is_that_of_speed_and_height():

@@ -172,9 +172,15 @@ def test_arrays_are_the_cases_one_by_one(brake):
         assert np.array_equal(getattr(many, name), [getattr(each, name) for each in one])
 
 
-def test_the_stated_error_covers_that_of_a_narrow_block_with_a_far_fulcrum():
-    """Against 30 digits: the block's width is a fiftieth of what the fulcrum's height multiplies."""
-    r, b, offset, half = 0.04096512127180139, 0.004465673504787392, 0.05757936414019231, 0.03360478116
+@pytest.mark.parametrize(
+    ("r", "b", "offset", "half"),
+    [
+        (0.04096512127180139, 0.004465673504787392, 0.05757936414019231, 0.03360478116),
+        (0.7965638122569788, 0.003011015927032267, 50.222361483916224, 9.058383582651331e-07),
+    ],
+)
+def test_the_stated_error_covers_that_of_a_narrow_block_with_a_far_fulcrum(r, b, offset, half):
+    """Against 30 digits: the block's width is a fiftieth of what the fulcrum's height multiplies, or less."""
     block = machines.Block(r, 0.05, 2 * half, 0.5, b, offset)
     found = machines.solve_brake(block, friction=0.0, force=100.0)
     with mp.workdps(30):

@@ -104,6 +104,53 @@ def test_it_locks_where_it_says():
         assert ("grips by itself" in found.message) == locks
 
 
+LOCKS_IN_A_NARROW_RANGE = [  # reverse; start and end of the lining, b, c, a, psi
+    (False, 0.853934, 2.973241, 0.042646, 0.045508, 0.137521, -0.626664),
+    (False, 0.387507, 2.955646, 0.076578, 0.139486, 0.057178, -0.772506),
+    (False, 0.772714, 2.447902, 0.051472, 0.101145, 0.047625, 0.054963),
+    (True, 0.979541, 2.681742, 0.104316, 0.056825, 0.066554, -0.659346),
+]
+
+
+@pytest.mark.parametrize(("reverse", *"defghi"), LOCKS_IN_A_NARROW_RANGE)
+def test_frictions_that_lock_are_found_in_a_narrow_range(reverse, d, e, f, g, h, i):
+    """By quadrature: up to the limit the lining's moment holds the shoe back, or nothing holds it."""
+    brake = machines.Sliding(R, WIDTH, d, e, f, g, h, i, shoes="single")
+    limit = float(machines.solve_brake(brake, friction=0.0, force=1.0, reverse=reverse).locking_friction)
+    assert np.isfinite(limit)
+
+    def moment(mu):
+        delta = brake.zero(np.asarray(mu), not reverse)
+        if np.isnan(delta):
+            return np.nan
+        (alpha, weight), s = quadrature(brake, float(delta)), 1.0 if reverse else -1.0
+        out, along = np.stack([np.sin(alpha), -np.cos(alpha)]), np.stack([np.cos(alpha), np.sin(alpha)])
+        on_shoe = (s * mu * along - out) * np.maximum(np.sin(alpha - float(delta)), 0.0) * weight
+        x, y = R * out - np.array([[f], [-g]])
+        return (x * on_shoe[1] - y * on_shoe[0]).sum()
+
+    assert moment(limit * (1 + 1e-6)) < 0
+    assert not any(moment(part * limit) <= 0 for part in np.linspace(0.0, 1 - 1e-6, 300))
+    for part, locks in ((1 - 1e-6, False), (1 + 1e-6, True)):
+        found = machines.solve_brake(brake, friction=part * limit, force=1.0, reverse=reverse)
+        assert ("grips by itself" in found.message) == locks
+
+
+def test_a_brake_that_slides_past_a_range_in_which_it_locks_says_so():
+    brake = machines.Sliding(R, WIDTH, *LOCKS_IN_A_NARROW_RANGE[3][1:], shoes="single")
+    found = machines.solve_brake(brake, friction=0.3, force=1.0, reverse=True)
+    assert not found.locked
+    assert found.message == "slides, but locks in a range of lower friction, from 0.1119 on"
+
+
+def test_a_shoe_that_locks_without_friction_has_no_margin():
+    """Its abutment's force passes beside the shoe: a force on it would have to pull."""
+    brake = machines.Sliding(R, WIDTH, 0.6496, 2.7344, 0.10497, 0.045629, 0.101114, -0.6722, shoes="single")
+    for friction in (0.0, 0.3):
+        found = machines.solve_brake(brake, friction=friction, force=1.0)
+        assert (found.locked, found.locking_friction, found.margin) == (True, 0.0, -np.inf)
+
+
 def test_shoes_that_nothing_holds_divide_by_nothing():
     friction = np.linspace(0.05, 4.0, 159)
     with np.errstate(divide="raise", invalid="raise", over="raise"):

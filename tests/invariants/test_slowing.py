@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mpmath import mp, mpf
 from scipy.integrate import solve_ivp
 
 from brakes import vehicle
@@ -135,3 +136,17 @@ def test_stops_are_mirrored_by_the_other_axle():
         two = vehicle.slow_down(mirrored, LEVEL, AT_ONCE, force, 0.7, "rear")
         assert one.distance == pytest.approx(two.distance, rel=1e-14)
         assert one.front_force == pytest.approx(two.rear_force, rel=1e-13)
+
+
+@pytest.mark.parametrize("pull", [-7.0, -0.3])
+def test_a_stop_early_in_the_rise_keeps_its_digits(pull):
+    """Speed V + p t - r t^2 / (2 t2) = 0 in 40 digits: uphill, p and the root of p^2 + ... nearly cancel."""
+    speed, rate, rise_time = 0.05, 0.5, 150.0
+    with mp.workdps(40):
+        p, r, t2 = mpf(pull), mpf(rate), mpf(rise_time)
+        time = (p + mp.sqrt(p**2 + 2 * r * mpf(speed) / t2)) * t2 / r
+        way = mpf(speed) * time + p * time**2 / 2 - r * time**3 / (6 * t2)
+        found = to_rest(speed, pull, rate, rise_time, True)
+        np.testing.assert_allclose(
+            [float(x / y) for x, y in zip(found, (way, time), strict=True)], 1, rtol=1e-14
+        )

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from brakes import calipers, drum, forklift, planar
+from brakes import calipers, drum, forklift, machines, planar, vehicle
 from brakes.planar.kinematics import driver_at_travel
 
 PISTON = 11650.0  # N
@@ -118,6 +118,53 @@ def interference_of(stroke: float) -> int:
     return len(replace(BRAKE, piston_stroke=stroke).move_shoes(0.0106).interference)
 
 
+def stops_against_a_load(torque: float) -> Any:
+    duty = drum.Duty(20.0, 50.0, 5.0, load_torque=torque)
+    return drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu).status
+
+
+VEHICLE = vehicle.Vehicle(100.0, cg_behind_front=0.75, cg_height=1.0, wheelbase=1.5)
+
+
+def limits_of(friction: float, share: float = 0.5) -> list[bool]:
+    found = vehicle.braking_limits(VEHICLE, friction, share)
+    ratios = found.front_alone, found.rear_alone, found.front_locks, found.rear_locks
+    return [bool(np.isinf(each)) for each in ratios]
+
+
+def rolls_on_any_slope(force: float) -> bool:
+    return not np.isinf(vehicle.hold(VEHICLE, vehicle.Road(0.1, 0.5), brake_force=force).rolling_slope)
+
+
+def friction_on(slope: float) -> Any:
+    return vehicle.friction_to_hold(VEHICLE, slope, braked="both", downhill="front").reason
+
+
+def limit_of_stop(torque: float) -> Any:
+    conditions = forklift.StopConditions(0.1, 5.0, 0.7, 0.5, 0.3, G)
+    return forklift.stop(TRUCK, conditions, torque).limited_by
+
+
+def stops_on_a_curve_to(last: float) -> Any:
+    """A stop that warms the brake by 10 K, from 293.15 K."""
+    duty = drum.Duty(20.0, 50.0, 5.0, friction_curve=[[293.15, 0.4], [last, 0.4]])
+    return drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu).status
+
+
+def warned_of_pv(most: float) -> int:
+    duty = drum.Duty(20.0, 50.0, 5.0, most_pv=most)
+    return len(drum.repeat_stops(duty, 0.4, lambda mu: 1000.0 * mu, pv=1e6).warnings)
+
+
+def sticks(friction: float) -> bool:
+    return bool(machines.Cone(0.153, 0.165, width=0.06).remarks(friction, False))
+
+
+def band_of(second_arm: float) -> Any:
+    band = machines.Band(0.2, 0.05, wrap=3.9, force_arm=0.5, first_arm=0.1, second_arm=second_arm)
+    return machines.solve_brake(band, friction=0.0, force=1.0).status
+
+
 def motion_at(brake: forklift.DuoServo) -> Callable[[float], Any]:
     return lambda clearance: len(brake.move_shoes(clearance).right_tip)
 
@@ -145,6 +192,16 @@ def edges() -> Iterator[tuple[str, Callable[[float], Any], float]]:
         WHEELBASE,
     )
     yield "pin at two radii", shoe_on_a_pin, 2 * 0.138
+    yield "front axle never locks", limits_of, 0.75
+    yield "brakes that hold the weight", rolls_on_any_slope, 100.0 * 9.806
+    yield "slope on which it tips", friction_on, math.atan(0.75)
+    locked = forklift.stop(TRUCK, forklift.StopConditions(0.1, 5.0, 0.7, 0.5, 0.3, G))
+    yield "torque that locks the wheel", limit_of_stop, float(locked.torque_per_brake)
+    yield "cone that sticks", sticks, 0.2
+    yield "second arm of a band", band_of, 0.1
+    yield "last temperature of a curve", stops_on_a_curve_to, 303.15
+    yield "largest pressure times speed", warned_of_pv, 1e6
+    yield "load torque as large as the brake's", stops_against_a_load, 400.0
     yield "stroke to a dead centre", stroke_of_piston, TO_DEAD_CENTRE
     yield "travel to a dead centre", driver_of_travel, TO_DEAD_CENTRE
 

@@ -83,6 +83,18 @@ def test_factors_end_before_locking_and_say_where_it_is() -> None:
     assert not any("locks" in text.get_text() for text in trailing.texts)
 
 
+@pytest.mark.parametrize("friction", [0.05, 0.12, 0.3])
+def test_charts_of_shoes_without_equilibrium_below_locking_have_a_finite_range(friction: float) -> None:
+    """In reverse: no equilibrium up to a friction of 0.11, then it locks, and from 0.14 on it slides."""
+    shoe = machines.Sliding(
+        0.138, 0.05, 0.979541, 2.681742, 0.104316, 0.056825, 0.066554, -0.659346, "single"
+    )
+    chart = factor_chart(machines.solve_brake(shoe, friction=friction, force=1000.0, reverse=True))
+    assert chart.y.high is None or np.isfinite(chart.y.high)
+    assert (float(chart.curves[0].x[-1]) > 0.3) == (friction == 0.3)
+    plot_chart(Figure().subplots(), chart)
+
+
 def test_charts_of_brakes_far_past_a_high_locking_friction_have_a_finite_range() -> None:
     """A block that locks at 5, and a trailing shoe that locks at 2.6, as its pin is outside of the drum."""
     block = machines.Block(0.15, 0.05, 0.6, 0.6, block_arm=0.25, offset=0.05, pressure_law="short")

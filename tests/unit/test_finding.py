@@ -213,7 +213,11 @@ def test_command_finds_a_diameter_for_a_torque(capsys):
         (("cone", "friction", "torque = 100 N m"), 1, "torque is 200 N m whatever brake.friction is"),
         (("plates", "plates.faces", "torque = 300 N m"), 0, "13 is the first past it"),
         (("plates", "plates.faces=2:5:2", "torque = 300 N m"), 1, "at most 120 N m, at plates.faces = 5"),
-        (("plates", "plates.faces=1:9e5:2", "torque = 1 N m"), 2, "there are more than 100000 whole numbers"),
+        (
+            ("vehicle", "cable.brakes=1:9e5:2", "pedal_travel = 1 m"),
+            2,
+            "there are more than 100000 whole numbers",
+        ),
         (("disc", "load.torque", "torque = 100 N m"), 2, "the file gives it no value"),
         (("disc", "brake.friction", "torque = 100 MPa"), 2, "a unit of pressure or modulus where moment"),
         (("disc", "heat.stops", "hottest = 200 degC"), 2, "a difference from the temperature of the surr"),

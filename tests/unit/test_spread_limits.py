@@ -76,6 +76,16 @@ def test_what_is_said_of_worst_cases_is_passed_on_once():
     assert found.warnings == ("at 3 of 9 designs it slides", "worst cases: it tips")
 
 
+def test_warnings_that_differ_in_their_numbers_are_passed_on_once():
+    found = spread_of(lambda x, y: 1 + x * (1 - x) + y, warn=lambda x, y: (f"it slides by {x.max():.4g} mm",))
+    assert sum("it slides by" in each for each in found.warnings) == 1
+
+
+def test_an_infinite_result_has_no_error():
+    made = spread_of(lambda x, y: np.where(x > 0.2, np.inf, x + y), error=lambda x, y: 0.0 * x)
+    assert "inf" in text_of(made)
+
+
 @pytest.mark.parametrize("error", [np.inf, 10.0])
 def test_without_a_search_the_answer_of_a_corner_is_given(error):
     """Errors hide all trends, so that the only corner is the nominal design: random ones lie beyond it."""

@@ -1,10 +1,12 @@
 """Every argument of every design of brakes refuses values of a wrong kind, in one sentence that names it."""
 
 from dataclasses import fields
+from functools import partial
 
+import numpy as np
 import pytest
 
-from brakes import calipers, drum, forklift, planar
+from brakes import calipers, chain, drum, find, forklift, planar, vehicle
 from tests.unit.wrong_values import refusals_missing
 
 SHOE = {"drum_radius": 0.138, "face_width": 0.05, "lining": (0.6, 1.9), "pivot": (0.02, -0.11)}
@@ -19,6 +21,15 @@ LEVERS |= {"gamma": 0.3}
 JOINT = {"name": "j", "body": "arm", "other": "ground"}
 ARM = planar.Mechanism(
     ("arm",), (planar.Pin("pin", "arm", "ground", (0.0, 0.0)),), (planar.Moment("turn", "arm"),)
+)
+
+BICYCLE, SLOPE = vehicle.Vehicle(80.0, 0.62, 1.1, 1.02), vehicle.Road(0.1, 0.8)
+BRAKED = chain.brake_from_pedal(
+    forklift.Truck(**TRUCK),
+    forklift.StopConditions(**ROAD),
+    chain.Pedal(5.0, 450.0),
+    chain.HydraulicLine(0.022, 0.032),
+    0.7,
 )
 
 
@@ -59,6 +70,36 @@ BRAKES = {
     "follow_shoes": (
         forklift.follow_shoes,
         {"geometry": forklift.BENDIX_12_5, "clearance": 3e-4, "positions": 3},
+    ),
+    "hold": (
+        vehicle.hold,
+        {"vehicle": BICYCLE, "road": SLOPE, "braked": "both", "downhill": "front", "brake_force": 100.0},
+    ),
+    "braking_limits": (
+        vehicle.braking_limits,
+        {"vehicle": BICYCLE, "friction": 0.8, "front_share": 0.5, "leading": "front"},
+    ),
+    "slow_down": (
+        vehicle.slow_down,
+        {"vehicle": BICYCLE, "road": SLOPE, "approach": vehicle.Approach(8.0), "brake_force": 200.0}
+        | {"front_share": 0.5, "leading": "front"},
+    ),
+    "friction_to_hold": (
+        vehicle.friction_to_hold,
+        {"vehicle": BICYCLE, "slope": 0.1, "braked": "both", "downhill": "front"},
+    ),
+    "repeat_stops": (
+        partial(drum.repeat_stops, torque_at=np.positive),
+        {"duty": drum.Duty(20.0, 50.0, 5.0), "friction": 0.4},
+    ),
+    "heat_of_stop": (chain.heat_of_stop, {"stop": BRAKED.stop, "drums": chain.Drums(18.0, 0.05)}),
+    "fade_of_stops": (
+        partial(chain.fade_of_stops, torque_per_force=np.positive),
+        {"braked": BRAKED, "drums": chain.Drums(18.0, 0.05), "friction": 0.4},
+    ),
+    "find": (
+        partial(find, np.positive),
+        {"target": 1.0, "samples": [0.0, 1.0, 2.0], "rounding": 0.0},
     ),
     "internal_forces": (
         forklift.internal_forces,

@@ -63,7 +63,7 @@ def headline(result: Spread, answer: int) -> str:
 def _numerical(result: Spread, answer: int) -> Callable[[float], float]:
     """Return the function that gives the absolute numerical error of each value of a result."""
     error = result.error[answer]
-    return lambda value: abs(value) * (0.0 if np.isnan(error) else error)
+    return lambda value: abs(value) * error if error > 0 else 0.0  # not of infinite values times 0
 
 
 def _deviation(result: Spread, answer: int) -> tuple[float, float]:

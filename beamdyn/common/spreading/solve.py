@@ -5,6 +5,7 @@ In shapes of arrays, N counts designs, d inputs, and k results.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
@@ -202,8 +203,10 @@ class _FurtherAnswers:
 
 
 def _subject(sentence: str) -> tuple[str, ...]:
-    """Return the key by which repeated warnings are recognized: kind and quantity, or else the text."""
-    return (sentence.kind, sentence.quantity) if isinstance(sentence, Statement) else (sentence,)
+    """Return what tells repeated warnings: kind and quantity, or else the text without its numbers."""
+    if isinstance(sentence, Statement):
+        return sentence.kind, sentence.quantity
+    return (re.sub(r"\d[\d.e+-]*", "", sentence),)
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:
