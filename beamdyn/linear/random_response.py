@@ -19,7 +19,7 @@ from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear import inputs_outputs, mean_square, spectra
 from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, evaluate_also, with_forces
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
-from beamdyn.linear.transfer import check_stable
+from beamdyn.linear.transfer import check_stable, rounding_errors
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
@@ -197,14 +197,19 @@ def random_response(
         It follows from the density of the input at |f - h n|, for harmonics h of the rotation with n turns
         per second.
         """
-        total = np.zeros(len(f))
-        for h, H in _expand(model, model.drives(drive), seen).items():
-            size = np.abs(H(2j * np.pi * f)) ** 2
-            there = np.abs(f - h * speed / _TURN)
-            total += size * (spectrum.at(there) if isinstance(spectrum, spectra.PowerSpectrum) else spectrum)
-        return total
+        return sum((size**2 * S for _, size, S in shares(model)), np.zeros(len(f)))
 
-    of_psd = evaluate_also(refined, density)
+    def shares(model: ModelAtSpeed) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray | float]]:
+        """Yield frequency of the input, size of the transfer function, and density, for each harmonic."""
+        for h, H in _expand(model, model.drives(drive), seen).items():
+            there = f - h * speed / _TURN
+            known = isinstance(spectrum, spectra.PowerSpectrum)
+            yield there, np.abs(H(2j * np.pi * f)), spectrum.at(np.abs(there)) if known else spectrum
+
+    of_psd, rounding = evaluate_also(refined, density), np.zeros(len(f))
+    for k, (there, size, S) in enumerate(shares(model)):
+        moved = rounding_errors(model, drive, seen, there)[:, k]
+        rounding += (2 * size + moved) * moved * S
     parametric = mean_square.parametric_term(model, drive, spectrum)
     return RandomResponse(
         speed=speed,
@@ -212,7 +217,7 @@ def random_response(
         rms_error=float(refined.error[0]),
         frequencies=f,
         psd=of_psd.value,
-        psd_error=of_psd.error,
+        psd_error=of_psd.error + rounding,
         input_rms=spectrum.rms if isinstance(spectrum, spectra.PowerSpectrum) else math.inf,
         parametric=parametric,
         input=f"{drive.label} [{drive.unit}]",
