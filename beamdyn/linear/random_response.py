@@ -192,22 +192,12 @@ def random_response(
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
 
     def density(model: ModelAtSpeed) -> np.ndarray:
-        """Compute the one-sided density of the response at the frequencies f [Hz].
-
-        It follows from the density of the input at |f - h n|, for harmonics h of the rotation with n turns
-        per second.
-        """
-        return sum((size**2 * S for _, size, S in shares(model)), np.zeros(len(f)))
-
-    def shares(model: ModelAtSpeed) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray | float]]:
-        """Yield frequency of the input, size of the transfer function, and density, for each harmonic."""
-        for h, H in _expand(model, model.drives(drive), seen).items():
-            there = f - h * speed / _TURN
-            known = isinstance(spectrum, spectra.PowerSpectrum)
-            yield there, np.abs(H(2j * np.pi * f)), spectrum.at(np.abs(there)) if known else spectrum
+        """Compute the one-sided density of the response at the frequencies f [Hz]."""
+        shares = _shares(model, model.drives(drive), seen, spectrum, f)
+        return sum((size**2 * S for _, size, S in shares), np.zeros(len(f)))
 
     of_psd, rounding = evaluate_also(refined, density), np.zeros(len(f))
-    for k, (there, size, S) in enumerate(shares(model)):
+    for k, (there, size, S) in enumerate(_shares(model, model.drives(drive), seen, spectrum, f)):
         moved = rounding_errors(model, drive, seen, there)[:, k]
         rounding += (2 * size + moved) * moved * S
     parametric = mean_square.parametric_term(model, drive, spectrum)
@@ -311,6 +301,24 @@ def _expand(
     model: ModelAtSpeed, drives: Mapping[int, HarmonicDrive], seen: inputs_outputs.Observation
 ) -> dict[int, mean_square.PartialFractions]:
     return {h: mean_square.partial_fractions(model, each, seen) for h, each in drives.items()}
+
+
+def _shares(
+    model: ModelAtSpeed,
+    drives: Mapping[int, HarmonicDrive],
+    seen: inputs_outputs.Observation,
+    spectrum: spectra.PowerSpectrum | float,
+    f: np.ndarray,
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray | float]]:
+    """Yield what each harmonic h of the rotation adds to the response at the frequencies f [Hz].
+
+    That is the frequency f - h n of the input, with n turns per second, the magnitude of the transfer
+    function from there, and the density of the input there.
+    """
+    for h, H in _expand(model, drives, seen).items():
+        there = f - h * model.speed / _TURN
+        S = spectrum.at(np.abs(there)) if isinstance(spectrum, spectra.PowerSpectrum) else spectrum
+        yield there, np.abs(H(2j * np.pi * f)), S
 
 
 def _mean_square(

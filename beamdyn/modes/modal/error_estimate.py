@@ -177,8 +177,8 @@ def rounding_of_entries(matrix: np.ndarray, left: np.ndarray, right: np.ndarray)
 
     `left` and `right` have the shape (..., n) for a matrix (n, n).
     """
-    squares = (np.abs(each) ** 2 for each in (left, matrix, right))
-    return _OF_ENTRIES * np.sqrt(np.einsum("...i,ij,...j->...", *squares, optimize=True))
+    left, matrix, right = (np.abs(each) ** 2 for each in (left, matrix, right))
+    return _OF_ENTRIES * np.sqrt((left * (right @ matrix.T)).sum(axis=-1))
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:
