@@ -19,7 +19,7 @@ from beamdyn.common.results.statements import announced_of_plain_beam
 from beamdyn.linear import inputs_outputs, mean_square, spectra
 from beamdyn.linear.convergence import Refined, check_linear, evaluate_accurately, evaluate_also, with_forces
 from beamdyn.linear.model_at_speed import HarmonicDrive, ModelAtSpeed
-from beamdyn.linear.transfer import check_stable
+from beamdyn.linear.transfer import check_stable, rounding_errors
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import warn_of_rotation
 from beamdyn.modes.repeated import JudgedByRepeating, repeatable
@@ -192,19 +192,14 @@ def random_response(
         refuse(f < 0, "frequencies", f, "Hz", "give 0 or more")
 
     def density(model: ModelAtSpeed) -> np.ndarray:
-        """Compute the one-sided density of the response at the frequencies f [Hz].
+        """Compute the one-sided density of the response at the frequencies f [Hz]."""
+        shares = _shares(model, model.drives(drive), seen, spectrum, f)
+        return sum((size**2 * S for _, size, S in shares), np.zeros(len(f)))
 
-        It follows from the density of the input at |f - h n|, for harmonics h of the rotation with n turns
-        per second.
-        """
-        total = np.zeros(len(f))
-        for h, H in _expand(model, model.drives(drive), seen).items():
-            size = np.abs(H(2j * np.pi * f)) ** 2
-            there = np.abs(f - h * speed / _TURN)
-            total += size * (spectrum.at(there) if isinstance(spectrum, spectra.PowerSpectrum) else spectrum)
-        return total
-
-    of_psd = evaluate_also(refined, density)
+    of_psd, rounding = evaluate_also(refined, density), np.zeros(len(f))
+    for k, (there, size, S) in enumerate(_shares(model, model.drives(drive), seen, spectrum, f)):
+        moved = rounding_errors(model, drive, seen, there)[:, k]
+        rounding += (2 * size + moved) * moved * S
     parametric = mean_square.parametric_term(model, drive, spectrum)
     return RandomResponse(
         speed=speed,
@@ -212,7 +207,7 @@ def random_response(
         rms_error=float(refined.error[0]),
         frequencies=f,
         psd=of_psd.value,
-        psd_error=of_psd.error,
+        psd_error=of_psd.error + rounding,
         input_rms=spectrum.rms if isinstance(spectrum, spectra.PowerSpectrum) else math.inf,
         parametric=parametric,
         input=f"{drive.label} [{drive.unit}]",
@@ -306,6 +301,24 @@ def _expand(
     model: ModelAtSpeed, drives: Mapping[int, HarmonicDrive], seen: inputs_outputs.Observation
 ) -> dict[int, mean_square.PartialFractions]:
     return {h: mean_square.partial_fractions(model, each, seen) for h, each in drives.items()}
+
+
+def _shares(
+    model: ModelAtSpeed,
+    drives: Mapping[int, HarmonicDrive],
+    seen: inputs_outputs.Observation,
+    spectrum: spectra.PowerSpectrum | float,
+    f: np.ndarray,
+) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray | float]]:
+    """Yield what each harmonic h of the rotation adds to the response at the frequencies f [Hz].
+
+    That is the frequency f - h n of the input, with n turns per second, the magnitude of the transfer
+    function from there, and the density of the input there.
+    """
+    for h, H in _expand(model, drives, seen).items():
+        there = f - h * model.speed / _TURN
+        S = spectrum.at(np.abs(there)) if isinstance(spectrum, spectra.PowerSpectrum) else spectrum
+        yield there, np.abs(H(2j * np.pi * f)), S
 
 
 def _mean_square(

@@ -14,8 +14,10 @@ import numpy as np
 from beamdyn.accuracy.refinement import BASES_OF_STATIC_LOADS, refine
 from beamdyn.common.inputs.checks import ascending, real, within
 from beamdyn.common.results.statements import announced
+from beamdyn.equations.equations_of_motion import Equations
+from beamdyn.equations.root_motion import RootMotion
 from beamdyn.loads import span_loads
-from beamdyn.loads.load_rows import STRAIGHT, barred_of_loads, span_rows
+from beamdyn.loads.load_rows import STRAIGHT, LoadRows, barred_of_loads, span_rows
 from beamdyn.loads.stations import Positions, SectionPoints, StationOutputs
 from beamdyn.modes.modal.discretization_choice import (
     TOLERANCES,
@@ -159,14 +161,13 @@ def static_loads(
     asked = span_loads.AskedLoads.of(scene, at, points, youngs_modulus)
 
     def solved(model: Model) -> _Solved:
-        (found, tip, rounding), (coarse, *_) = (
-            _solve(each, asked, speeds, theta) for each in (model, model.coarser)
-        )
-        rounding = rounding + _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
-        across = distance_across(model, lambda fewer: _solve(fewer, asked, speeds, theta)[0], found)
+        fine, coarse = (_solve(each, asked, speeds, theta) for each in (model, model.coarser))
+        found, coarse = fine.outputs, coarse.outputs
+        rounding = fine.rounding() + _ROUNDING * np.abs(found).max(axis=1, keepdims=True)
+        across = distance_across(model, lambda fewer: _solve(fewer, asked, speeds, theta).outputs, found)
         distance = np.abs(found - coarse) + across  # at some stations either may be small by chance
         distance = np.maximum(distance, _ALONG * distance.max(axis=1, keepdims=True))
-        return _Solved(model, found, BASES_OF_STATIC_LOADS.factor * distance + rounding, tip)
+        return _Solved(model, found, BASES_OF_STATIC_LOADS.factor * distance + rounding, fine.tip)
 
     def finer(found: _Solved) -> _Solved | None:
         model = refine_model(found.model) if isinstance(discretization, str) else None
@@ -213,14 +214,44 @@ def _warnings(scene: Scene, model: Model, speeds: np.ndarray, tip: np.ndarray) -
     yield from warn_of_static_deflection(size, scene.beam.length, speeds)
 
 
-def _solve(
-    model: Model, asked: span_loads.AskedLoads, speeds: np.ndarray, theta: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Compute K outputs at S stations in equilibrium at C speeds, tip deflections, and rounding errors.
+@dataclass(frozen=True)
+class _Equilibria:
+    """Equilibria of one model at C speeds: coordinates (C, n), and what gives K outputs at S stations.
 
-    The angle of rotation is theta [rad].  Outputs and rounding errors, those by the entries of the stiffness
-    matrix, have the shape (C, S, K).
+    The stiffness matrices K are divided by the outer products of the scales `size` (C, n) of the coordinates.
     """
+
+    equations: Equations
+    rows: LoadRows
+    root: RootMotion
+    scaled: np.ndarray
+    size: np.ndarray
+    q: np.ndarray
+
+    @property
+    def outputs(self) -> np.ndarray:
+        """Outputs, (C, S, K)."""
+        return self.rows.at(self.root, self.q, np.zeros_like(self.q))
+
+    @property
+    def tip(self) -> np.ndarray:
+        """Tip deflections [m] in d directions, (C, d)."""
+        return self.q @ self.equations.tips.T
+
+    def rounding(self) -> np.ndarray:
+        """Compute the errors of the outputs by rounding of the entries of the stiffness matrices."""
+        found = []
+        for by_coordinate, scaled, size, q in zip(
+            self.rows.per_coordinate(self.root), self.scaled, self.size, self.q, strict=True
+        ):
+            load = (by_coordinate / size).reshape(-1, len(q)).T
+            answer = np.linalg.solve(scaled, load).T.reshape(by_coordinate.shape)
+            found.append(rounding_of_entries(scaled, answer, q * size))
+        return np.array(found)
+
+
+def _solve(model: Model, asked: span_loads.AskedLoads, speeds: np.ndarray, theta: float) -> _Equilibria:
+    """Compute the equilibria of a model at C speeds, at the angle of rotation theta [rad]."""
     equations = model.equations
     rows = span_rows(model.scene, model.discretization, equations, asked.stations)
     rows = rows.through(asked.outputs.matrix)
@@ -236,9 +267,4 @@ def _solve(
             "own weight buckles it at this or a lower speed, or it turns freely about its root"
         )
     q = np.linalg.solve(scaled, (equations.load(root) / size)[..., None])[..., 0] / size
-    outputs, rounding = rows.at(root, q, np.zeros_like(q)), []
-    for k, by_coordinate in enumerate(rows.per_coordinate(root)):
-        load = (by_coordinate / size[k]).reshape(-1, equations.size).T
-        answer = (np.linalg.solve(scaled[k], load).T / size[k]).reshape(by_coordinate.shape)
-        rounding.append(rounding_of_entries(K[k], answer, q[k]))
-    return outputs, q @ equations.tips.T, np.array(rounding)
+    return _Equilibria(equations, rows, root, scaled, size, q)

@@ -159,7 +159,10 @@ class SteadyResponse(StatesModelError):
 
     @cached_property
     def refined(self) -> SteadyResponse | None:
-        """Response with 1.5 times as many modes, at least two more; None if there is no larger model."""
+        """Response with 1.5 times as many modes, at least two more, and static responses to the loads.
+
+        None if there is no larger model.
+        """
         finer = self.request.refined()
         return None if finer is None else finer.run()
 
@@ -256,8 +259,8 @@ def steady_response(
         Speeds [rad/s], ascending.
     modes : int or "auto"
         Number of modes at rest of each uncoupled displacement (such as bending in each plane).  "auto" takes
-        modes at the slowest and at the fastest speed: the smallest modal basis whose truncation error meets
-        the tolerance.
+        modes at the slowest and at the fastest speed, with the static responses to the loads there: the
+        smallest modal basis whose truncation error meets the tolerance.
     harmonics : int, optional
         Number of interactions with the periodic stiffness whose spectral lines are kept: 0 keeps the lines of
         the load, 1 also the lines that their product with the stiffness adds, and so on.  If not given, as
@@ -279,8 +282,9 @@ def steady_response(
 
     References
     ----------
-    Harmonic balance in two phases, stability by Hill's method (standard: Nayfeh and Mook, 1979); own
-    derivation: docs/conventions.md.
+    Harmonic balance in two phases, stability by Hill's method (standard: Nayfeh and Mook, 1979); static
+    responses: Craig and Kurdila (2006), Fundamentals of Structural Dynamics, section 11.4; own derivation:
+    docs/conventions.md.
 
     Examples
     --------
@@ -319,7 +323,10 @@ class ResponseRequest(FieldsOnly):
         start = perf_counter()
         scene, speeds, motion = self.scene, self.speeds, check_steady_state(self.scene.motion)
         vibration = vibration_of(self.model, self.basis, motion, speeds)
-        rate, rate_error, status, undecided = vibration.stability()
+        # The shapes of static responses have frequencies that are no mode's, with which nothing resonates.
+        modes = replace(self.basis, static=())
+        free = vibration_of(self.model, modes, motion, speeds) if self.basis.static else vibration
+        rate, rate_error, status, undecided = free.stability()
         used, c, error = solve_parts(vibration.parts, vibration.tips, self.harmonics, self.tolerance)
         stable = (status == "stable") & np.isfinite(c).all(axis=(1, 2))
         c[~stable], error[~stable] = np.nan, np.nan
@@ -366,12 +373,12 @@ class ResponseRequest(FieldsOnly):
         return SolvedValues(response.amplitude, lost[0] if lost else "", note)
 
     def refined(self) -> ResponseRequest | None:
-        """Return the request with 1.5 times as many modes; None if there is no larger model."""
+        """Return the request of `SteadyResponse.refined`; None if there is no larger model."""
         basis = self.basis.refined()
         if basis is None or basis.modes is None:
             return None
         discretization = ensure_size(self.scene, self.discretization, basis.modes)
-        return replace(self, basis=basis, discretization=discretization)
+        return replace(self, basis=replace(basis, static=self.end_speeds), discretization=discretization)
 
     def run_smallest_basis(self) -> SteadyResponse:
         """Solve with the smallest modal basis that meets the tolerance, or with the largest one tried."""
@@ -385,12 +392,22 @@ class ResponseRequest(FieldsOnly):
     def smallest_basis(self) -> ModalBasis:
         """Return the smallest modal basis, with which the search for a sufficient basis starts.
 
-        It consists of modes at the slowest and at the fastest speed or, with large deflection, at each speed.
+        It consists of modes and static responses to the loads of the moving root, at the slowest and at the
+        fastest speed or, with large deflection, of modes at each speed.
+        """
+        ends = self.end_speeds
+        return ModalBasis(FEWEST_MODES, ends, ends) if ends else ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
+
+    @property
+    def end_speeds(self) -> tuple[float, ...]:
+        """Slowest and fastest speed below the critical one [rad/s]; one speed if they are equal.
+
+        There are none with large deflection: each equilibrium has modes of its own.
         """
         if self.scene.physics.large_deflection:
-            return ModalBasis(_FIRST_ABOUT_EQUILIBRIA)
+            return ()
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
-        return ModalBasis(FEWEST_MODES, tuple(np.unique([speed.min(), speed.max()]).tolist()))
+        return tuple(np.unique([speed.min(), speed.max()]).tolist())
 
     @cached_property
     def model(self) -> Model:

@@ -180,15 +180,20 @@ def find_equilibria(model: Model, speeds: np.ndarray) -> np.ndarray:
 def choose_vibrating(
     scene: Scene, discretization: DiscretizationChoice, speeds: np.ndarray, modes: int
 ) -> Model:
-    """Choose a model for those speeds at which the beam has an equilibrium: see `choose_model`."""
+    """Choose a model for those speeds at which the beam has an equilibrium: see `choose_model`.
+
+    The choice is by undamped modes, of which the modal basis consists: damped ones of large models take
+    minutes.
+    """
+    undamped = scene.undamped
     try:
-        return choose_model(scene, discretization, speeds, modes)
+        return choose_model(undamped, discretization, speeds, modes).of(scene)
     except NoEquilibrium:
         pass
-    from_rest = replace(scene, physics=replace(scene.physics, branch="straight"))
+    from_rest = replace(undamped, physics=replace(scene.physics, branch="straight"))
     rough = choose_model(from_rest, discretization, np.zeros(1), modes).of(scene)
     found = speeds[np.isfinite(find_equilibria(rough, speeds)).all(axis=1)]
-    return choose_model(scene, discretization, found, modes) if found.size else rough
+    return choose_model(undamped, discretization, found, modes).of(scene) if found.size else rough
 
 
 # Lines of the tip deflection ------------------------------------------------------------------------

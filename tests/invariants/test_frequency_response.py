@@ -176,6 +176,9 @@ def test_stated_errors_cover_rounding_that_resonance_magnifies(mode, discretizat
     scene = bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), damping=bd.Damping(mass_factor=2e-4))
     found = bd.frequency_response(scene, 0.0, [f], "tip force", discretization=discretization)
     assert abs(found.response[0, 0] - exact) <= found.error[0, 0]
+    band = bd.PowerSpectrum([0.5 * f, 2 * f], [1.0, 1.0])
+    random = bd.random_response(scene, 0.0, band, "tip force", frequencies=[f], discretization=discretization)
+    assert abs(random.psd[0] - abs(exact) ** 2) <= random.psd_error[0]
 
 
 @pytest.mark.parametrize("beside", [-1, 0, 1])

@@ -378,6 +378,21 @@ def beck(push: float, across: float = 0.0) -> bd.Scene:
 
 
 @pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties
+def test_a_load_that_buckles_the_beam_within_rounding_is_refused_with_a_remedy_that_works() -> None:
+    def loaded(ratio: float) -> bd.Scene:
+        load = bd.TipLoad((-ratio * math.pi**2 / 4, 0.0, 0.0))
+        return bd.Scene(bd.Beam.from_stiffness(1.0, 1.0, 1.0), bd.Mount(0.5), physics=BENT, tip_load=load)
+
+    said = r"tip_load.force = \(-2.467.*\): .*buckles the beam at rest.*part in 1e9"
+    for ratio in (1 - 1e-14, 1.0, 1 + 2.3e-16, 1 + 1e-14):
+        with pytest.raises(ValueError, match=said):
+            bd.natural_modes(loaded(ratio), 0.0, 2)
+        assert bd.critical_point(loaded(ratio)).speed < 1e-6
+    for ratio in (1 - 1e-9, 1 + 1e-9):
+        assert bd.natural_modes(loaded(ratio), 0.0, 2).frequency.shape == (2,)
+
+
+@pytest.mark.filterwarnings("ignore:bending_stiffness:UserWarning")  # of unit properties
 @pytest.mark.parametrize(
     ("basis", "ratio", "error"),
     [(bd.Ritz(3), 1.0003, math.inf), (bd.Fem(10), 1.00001, math.inf), (bd.Ritz(12), 1.0003, 1e-10)],

@@ -11,6 +11,7 @@ import pytest
 
 import beamdyn as bd
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.loads import static_loads
 from beamdyn.loads.load_path import largest_per_coordinate
 from beamdyn.loads.load_rows import span_rows
 from beamdyn.loads.stations import mode_error, sections_at, stations_at
@@ -31,6 +32,15 @@ STEPPED = bd.Beam.rectangular(
 
 
 # Equilibrium --------------------------------------------------------------------------------------
+
+
+def test_rounding_of_loads_is_computed_for_the_finer_model_alone(monkeypatch):
+    speeds, computed, known = np.linspace(1, 9, 5), [], static_loads.rounding_of_entries
+    monkeypatch.setattr(
+        static_loads, "rounding_of_entries", lambda *given: computed.append(1) or known(*given)
+    )
+    bd.static_loads(bd.Scene(BEAM, OUTWARD), speeds)
+    assert len(computed) == len(speeds)
 
 
 @pytest.mark.parametrize("discretization", ["ritz", bd.Fem(8)])

@@ -414,3 +414,25 @@ def test_direction_of_the_tip(direction: Any) -> None:
     found = bd.steady_response(TWISTED, [60.0], modes=1, harmonics=0)
     with pytest.raises(ValueError, match="direction = "):
         found.tip(PHASE, 0.0, direction)
+
+
+# Modes left out -----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("twist", "width", "angle"), [(1.4, 0.1, 1.4), (1.0, 0.05, 1.1), (0.4, 0.05, 1.0), (1.2, 0.1, -1.4)]
+)
+def test_stated_errors_cover_the_modes_left_out_beside_a_heavy_tip_body(twist, width, angle):
+    """Modes 5 and 6 do little, 7 to 9 much; what all of them together do is known from static responses."""
+    tip = bd.TipMass(4 * 27 * width)  # four times the mass of the blade
+    twisted = Polynomial([0.0, twist])
+    blade = bd.Beam.rectangular(1.0, width, 0.01, 70e9, 2700.0, tip=tip, twist=twisted)
+    mount = bd.Mount(0.5, setting_angle=math.pi, bending_angle=angle)
+    physics, motion = bd.Physics(planes=2), bd.SteadyRotation(6.0)
+    scene = bd.Scene(blade, mount, motion, gravity=9.81, damping_ratio=0.02, physics=physics)
+    few, many, auto = (bd.steady_response(scene, [6.0], modes) for modes in (4, 12, "auto"))
+    true = abs(few.amplitude[0] - many.amplitude[0]) / few.bound[0]
+    assert true <= few.mode_error[0] <= 3 * true
+    stated = auto.mode_error[0] + many.mode_error[0]
+    assert abs(auto.amplitude[0] - many.amplitude[0]) <= stated * many.bound[0]
+    assert (auto.request.basis.modes, auto.mode_error[0] < 1e-6) == (2, True)

@@ -17,6 +17,7 @@ from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, explained
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.solvers import eigenvalues_over_speeds, solve_over_speeds, solver_of
 from beamdyn.scene.scene import Scene
+from beamdyn.scene.validity import refuse_buckling_load
 
 UNRESOLVED = 0.3  # relative error above which a comparison of two models gives no estimate
 # Ratio of the difference between successive meshes to the previous difference: the smallest that is used, for
@@ -112,8 +113,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
         raise InvalidValue("modes", modes, bound, "ask for fewer")
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
-    with explained():
-        if fine.eigenvalue.shape[1] < modes:  # beside the others, the mass of some modes is within rounding
+    if fine.eigenvalue.shape[1] < modes:  # beside the others, the mass of some modes is within rounding
+        refuse_buckling_load(scene)
+        with explained():
             raise np.linalg.LinAlgError
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)
     compared = coarse.shape[1]  # the coarser basis may have fewer linearly independent functions
@@ -177,8 +179,8 @@ def rounding_of_entries(matrix: np.ndarray, left: np.ndarray, right: np.ndarray)
 
     `left` and `right` have the shape (..., n) for a matrix (n, n).
     """
-    squares = (np.abs(each) ** 2 for each in (left, matrix, right))
-    return _OF_ENTRIES * np.sqrt(np.einsum("...i,ij,...j->...", *squares, optimize=True))
+    left, matrix, right = (np.abs(each) ** 2 for each in (left, matrix, right))
+    return _OF_ENTRIES * np.sqrt((left * (right @ matrix.T)).sum(axis=-1))
 
 
 def _error_across(model: Model, speeds: np.ndarray, squared: np.ndarray) -> np.ndarray | float:

@@ -301,17 +301,21 @@ class ModalBasis:
         discretization.
     speeds : tuple of float
         Speeds at which the modes are computed [rad/s].
+    static : tuple of float
+        Speeds at which the static responses to the loads of the moving root are added to the modes [rad/s].
     """
 
     modes: int | None
     speeds: tuple[float, ...] = (0.0,)
+    static: tuple[float, ...] = ()
 
     def __str__(self) -> str:
         if self.modes is None:
             return "all modes"
+        modes = counted(self.modes, "mode") + (" and the static responses to loads" if self.static else "")
         if self.is_at_rest:
-            return counted(self.modes, "mode")
-        return f"{counted(self.modes, 'mode')} at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
+            return modes
+        return f"{modes} at {' and at '.join(f'{v:.4g}' for v in self.speeds)} rad/s"
 
     @property
     def is_at_rest(self) -> bool:
@@ -348,7 +352,10 @@ def reduce_to_modes(equations: Equations, basis: ModalBasis) -> Equations:
     bases = {}
     for names in equations.coupled:
         places = equations.places(names)
-        shapes = span_modes(pencil.part(places).undamped(), count, basis.speeds)
+        part = pencil.part(places).undamped()
+        shapes = span_modes(
+            part, count, basis.speeds, _static_responses(equations, places, part, basis.static)
+        )
         tips = equations.tips[:, places] @ shapes
         larger = np.take_along_axis(tips, np.abs(tips).argmax(axis=0)[None], axis=0)[0]
         bases[names] = shapes * np.where(larger < 0, -1.0, 1.0)
@@ -372,8 +379,24 @@ def _with_residual(equations: Equations, reduced: Equations, speed: float) -> Eq
     return replace(reduced, circuit=replace(kept, capacitance=capacitance, bent=bent))
 
 
-def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.ndarray:
-    """Compute mass-normalised shapes that span the lowest conservative modes at given speeds.
+def _static_responses(
+    equations: Equations, places: np.ndarray, pencil: SteadyPencil, speeds: Sequence[float]
+) -> list[np.ndarray]:
+    """Compute the static responses, of unit mass, to the loads on the coordinates `places` at speeds [rad/s].
+
+    In the spaces of modes they stand for the modes left out, which respond to slow loads without inertia
+    (static correction).  `pencil` has the equations of these coordinates.
+    """
+    loads = [f[places] for f in equations.vectors.values() if f[places].any()]
+    held = pencil.K0 + pencil.shift * pencil.M
+    found = [np.linalg.solve(held + v**2 * pencil.K2, f) for v in speeds for f in loads]
+    return [q / np.sqrt(q @ pencil.M @ q) for q in found]
+
+
+def span_modes(
+    pencil: SteadyPencil, modes: int, speeds: Sequence[float], further: Sequence[np.ndarray] = ()
+) -> np.ndarray:
+    """Compute mass-normalised shapes that span the lowest conservative modes and further shapes.
 
     Parameters
     ----------
@@ -384,6 +407,8 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
         hardly change with speed.
     speeds : sequence of float
         Speeds [rad/s].
+    further : sequence of ndarray, shape (n,)
+        Further shapes, of unit mass.
 
     Returns
     -------
@@ -392,9 +417,9 @@ def span_modes(pencil: SteadyPencil, modes: int, speeds: Sequence[float]) -> np.
         those of different speeds are linearly dependent.
     """
     vectors = Solver(pencil).solve(np.asarray(speeds, dtype=float), min(modes, len(pencil.M))).vector
-    if tuple(speeds) == (0.0,):
+    if tuple(speeds) == (0.0,) and not further:
         return vectors[0]
-    all_shapes = np.concatenate([*vectors[:-1, :, : 2 + modes // 2], vectors[-1]], axis=1)
+    all_shapes = np.column_stack([*vectors[:-1, :, : 2 + modes // 2], vectors[-1], *further])
     independent = _orthonormal(pencil.M, all_shapes)
     return independent @ np.linalg.eigh(independent.T @ pencil.K0 @ independent)[1]
 
