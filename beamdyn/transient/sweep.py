@@ -31,7 +31,7 @@ from beamdyn.equations.effects import modelled_directions
 from beamdyn.modes.modal.discretization_choice import DiscretizationChoice
 from beamdyn.modes.modal.model import SPEED_SAMPLES, given_basis
 from beamdyn.modes.model_error.effect_choice import choose_for_motion, warn_of_peak
-from beamdyn.modes.model_error.left_out_changes import nothing_known
+from beamdyn.modes.model_error.left_out_changes import LOADED, nothing_known
 from beamdyn.modes.model_error.left_out_effects import LeftOutEffects, StatesModelError
 from beamdyn.scene.motion.base import check_picklable
 from beamdyn.scene.scene import Scene, SceneResult, check_scene
@@ -151,6 +151,8 @@ class Sweep(SceneResult, StatesModelError):
         """Relative changes (1,) of the largest peak by each neglected effect, from repeating its run."""
         if not len(self.left_out_speeds) or self.scene.motion is None:
             return nothing_known(self.scene)
+        if self.scene.tip_load.acts:
+            return nothing_known(self.scene, LOADED, self.left_out_speeds.shape)
         speed = float(self.left_out_speeds[0])
         if self.request is not None:
             case = self.request.transient_request(speed)

@@ -281,3 +281,17 @@ def test_peaks_in_two_planes_are_those_of_single_transients(tmp_path):
     assert not found.peaks_by_direction[:, 0].any()  # straight, and out of the plane
     labels = [text.get_text() for text in found.plot().get_legend().get_texts()]
     assert labels == ["magnitude", "out of the plane of rotation (flap)", "in the plane of rotation (edge)"]
+
+
+def test_a_beam_loaded_at_its_tip_is_not_run_again_for_a_model_error_that_is_not_known(monkeypatch):
+    scene = bd.Scene(
+        HARVESTER.beam,
+        bd.Mount(0.215, np.pi),
+        bd.SpinUp(20.0, 0.005),
+        physics=bd.Physics(large_deflection=True),
+        tip_load=bd.TipLoad(force=(0.0, 0.01, 0.0)),
+    )
+    found = bd.sweep(scene, [10.0], window=(0.0, 0.01), modes=1)
+    monkeypatch.setattr("beamdyn.transient.sweep.simulate", None)  # with all its modes it takes minutes
+    assert "no load at its tip" in found.left_out_effects.not_known["stretch"]
+    assert found.model_error.shape == (1,)
