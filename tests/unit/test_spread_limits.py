@@ -76,9 +76,10 @@ def test_what_is_said_of_worst_cases_is_passed_on_once():
     assert found.warnings == ("at 3 of 9 designs it slides", "worst cases: it tips")
 
 
-def test_warnings_that_differ_in_their_numbers_are_passed_on_once():
+def test_few_of_the_warnings_that_differ_in_their_numbers_are_passed_on():
     found = spread_of(lambda x, y: 1 + x * (1 - x) + y, warn=lambda x, y: (f"it slides by {x.max():.4g} mm",))
-    assert sum("it slides by" in each for each in found.warnings) == 1
+    assert sum("it slides by" in each for each in found.warnings) == 4  # one of random designs
+    assert any(each.endswith(" more warnings") for each in found.warnings)
 
 
 def test_an_infinite_result_has_no_error():

@@ -5,7 +5,6 @@ In shapes of arrays, N counts designs, d inputs, and k results.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from time import perf_counter
@@ -15,6 +14,7 @@ import numpy as np
 
 from beamdyn._version import __version__
 from beamdyn.common.inputs.checks import InvalidValue
+from beamdyn.common.results.one_line import counted
 from beamdyn.common.results.result import Provenance
 from beamdyn.common.results.statements import Statement, after
 from beamdyn.common.spreading.first_order import KnownDerivatives, first_order_of, slopes_from
@@ -24,7 +24,7 @@ from beamdyn.common.spreading.tolerances import SpreadInput
 from beamdyn.common.spreading.worst_case import BOTH, trends_of, worst_cases
 from beamdyn.common.words import percent
 
-_FEW = 3  # largest number of reasons for missing results that a warning lists
+_FEW = 3  # largest number of reasons for missing results, and of warnings about worst cases, that are listed
 
 
 @dataclass(frozen=True)
@@ -195,18 +195,18 @@ class _FurtherAnswers:
             parts = "; ".join([*why[:_FEW], *(["..."] if why[_FEW:] else [])])
             number = f"{sum(self._without.values())} of {self._count}"
             yield f"worst cases: {number} designs have no answer ({parts})"
-        said = {*map(_subject, before)}
-        for sentence in self._said:
-            if (subject := _subject(sentence)) not in said:
-                said.add(subject)
-                yield after("worst cases: ", sentence)
+        first = dict[tuple[str, ...], str]()
+        for sentence in (*before, *self._said):
+            first.setdefault(_subject(sentence), sentence)
+        new = [*first.values()][len({*map(_subject, before)}) :]
+        yield from (after("worst cases: ", said) for said in new[:_FEW])
+        if more := len(new[_FEW:]):  # such as one warning with other numbers in each design
+            yield f"worst cases: {counted(more, 'more warning')}"
 
 
 def _subject(sentence: str) -> tuple[str, ...]:
-    """Return what tells repeated warnings: kind and quantity, or else the text without its numbers."""
-    if isinstance(sentence, Statement):
-        return sentence.kind, sentence.quantity
-    return (re.sub(r"\d[\d.e+-]*", "", sentence),)
+    """Return the key by which repeated warnings are recognized: kind and quantity, or else the text."""
+    return (sentence.kind, sentence.quantity) if isinstance(sentence, Statement) else (sentence,)
 
 
 def _largest_error(found: SpreadAnswers) -> np.ndarray:

@@ -360,6 +360,14 @@ class LeadingSolver(Solver):
 class LoadedSolver(Solver):
     """Eigensolver for a stiffness that a tip load may make indefinite and not symmetric."""
 
+    @property
+    def critical_speed(self) -> float:
+        """Lowest speed at which the stiffness is singular [rad/s]; 0 if it is so at rest, within rounding."""
+        try:
+            return super().critical_speed
+        except np.linalg.LinAlgError:
+            return 0.0
+
     def solve(self, speeds: np.ndarray, count: int) -> Eigen:
         """Solve the eigenproblem for one speed after the other, by the inverse of the stiffness."""
         modes = [self._solve_loaded(speed, count) for speed in speeds]

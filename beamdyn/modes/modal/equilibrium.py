@@ -216,12 +216,7 @@ class DeflectedSolver(Solver):
         if count_negative(load, load.at_rest, 0.0):
             return StabilityLoss(0.0, True, load.at_rest)
         if not load.bends:
-            try:
-                squared = self._about(load.at_rest).critical_speed ** 2
-            except np.linalg.LinAlgError:
-                if self.elastica.load is None:
-                    raise
-                squared = 0.0  # within rounding, the load at the tip buckles the beam at rest
+            squared = self._about(load.at_rest).critical_speed ** 2
             return StabilityLoss(min(squared, top), squared < top, load.at_rest)
         before = continuation.start_curve(load, load.at_rest, 0.0, 1.0)
         with suppress(NotConverged):
