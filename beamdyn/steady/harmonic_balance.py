@@ -34,8 +34,8 @@ import numpy as np
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, list_harmonics, select_harmonics
 
 _MOST_ENTRIES = 10**7  # largest number of matrix entries solved as one batch: 80 MB
-# Largest number of terms of the series: enough to converge if each term divides the error by 20.
-_MOST_TERMS = 12
+# Largest number of terms of the series: enough to converge if each term divides the error by 5.
+_MOST_TERMS = 24
 _SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
 # Pairs of phase rates that have converged are removed from the arrays only if they are at least this fraction
 # of the pairs in them: the arrays are copied for this, which takes time, too.

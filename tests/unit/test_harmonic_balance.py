@@ -30,7 +30,7 @@ WEAKLY_COUPLED = {
     "damped, in gravity": replace(STEADY_ROLLING_IN_GRAVITY, damping_ratio=0.01),
 }
 STRONGLY_COUPLED = {  # and the top speed
-    "heavy": (replace(STEADY_ROLLING, gravity=100.0), 150.0),
+    "heavy": (replace(STEADY_ROLLING, gravity=1000.0), 150.0),
     "gyroscopic": (GYROSCOPIC, 8.0),
 }
 
