@@ -187,6 +187,7 @@ def test_stability_of_a_bent_beam_and_its_loss_are_confirmed_by_the_model_before
     assert found.error == pytest.approx(1.5 * error, rel=1e-6, abs=0.0)
 
 
+@pytest.mark.slow
 def test_the_error_of_a_loss_of_stability_holds_against_a_far_finer_basis() -> None:
     """The boundary layer of the strip in space is resolved slowly."""
     models = (Model(OBLIQUE, bd.Ritz(k)) for k in (25, 31))

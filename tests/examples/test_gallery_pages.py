@@ -74,6 +74,7 @@ def test_examples_run_again_when_what_they_ran_or_read_has_changed(build):
     assert run() == "a1b1b2"
 
 
+@pytest.mark.slow
 def test_examples_that_failed_after_a_change_are_run_again(build):
     run, root = build
     run()

@@ -146,6 +146,7 @@ def test_a_tip_body_behind_the_end_topples_and_one_before_it_does_not() -> None:
         assert decide_buckling(bd.Scene(beam)).exists is exists
 
 
+@pytest.mark.slow
 def test_none_found_is_warned_of_with_how_far_it_was_looked() -> None:
     tip = bd.TipMass(1e-3, -1e-9)  # topples in a layer too thin for any basis
     scene = bd.Scene(replace(HARVESTER.beam, tip=tip))

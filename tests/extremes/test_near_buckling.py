@@ -78,6 +78,7 @@ def _stepped() -> tuple[bd.Scene, float]:
     return bent, float(bd.critical_speed(scene))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("beyond", [1e-7, 1e-6, 6e-6, 5e-5])
 def test_a_basis_is_chosen_that_buckles_below_the_speed(beyond: float) -> None:
     # With five functions on each segment, the beam buckles 5e-7 beyond the critical speed; with three, 6e-5.

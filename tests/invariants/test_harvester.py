@@ -277,7 +277,8 @@ OUTPUTS = ["tip", "voltage", "current", "layer strain"]
 FREQUENCIES = [1.0, 40.0, 70.0, 300.0]
 
 
-@pytest.mark.parametrize("seed", [4, pytest.param(10, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [4, 10])
 def test_the_stated_error_of_the_power_covers_that_of_three_modes(seed):
     """With the first seed, powers of 3, 5 and 7 modes agree ten times better than with 16, at 60 rad/s."""
     rng = np.random.default_rng(seed)
@@ -319,6 +320,7 @@ def of_all_functions(output, discretization) -> np.ndarray:
     return bd.frequency_response(given, 80.0, FREQUENCIES, output=output, **how).response[:, 0]
 
 
+@pytest.mark.slow
 def test_strain_of_sixty_elements_is_alike_at_their_points_of_integration():
     """A linear curvature is the nearest one on each element: the error begins with a parabola, 0 at these."""
     nodes = L * bd.Fem(60).nodes(scene(OPEN).beam)
@@ -331,6 +333,7 @@ def test_strain_of_sixty_elements_is_alike_at_their_points_of_integration():
     assert (apart <= 1e-6 * largest).all()  # the issue's bound
 
 
+@pytest.mark.slow
 def test_strain_of_elements_at_the_begin_of_the_layers_is_of_second_order():
     counts, legendre = [60, 120, 240], of_all_functions("layer strain", "ritz")
     apart = [np.abs(of_all_functions("layer strain", bd.Fem(n, "uniform")) / legendre - 1) for n in counts]

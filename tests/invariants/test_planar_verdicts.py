@@ -28,6 +28,7 @@ def test_random_mechanisms_have_the_verdicts_that_they_have_elsewhere():
     assert not [*count_changes(10)]
 
 
+@pytest.mark.slow
 def test_what_no_disturbance_presses_jams_nothing():
     """The 95th mechanism of this seed: whether a disturbance of another part jammed it hung on rounding."""
     rng = np.random.default_rng(5)

@@ -386,6 +386,7 @@ def test_a_factor_of_the_bending_stiffness_multiplies_that_of_the_plate():
     assert stiff.frequency == pytest.approx(2 * soft.frequency, rel=1e-10)  # rounding
 
 
+@pytest.mark.slow
 def test_frequencies_with_automatic_physics_do_not_jump_where_a_factor_is_one():
     strip = bd.Beam.rectangular(0.05, Polynomial([0.012, -0.006]), 0.0002, **STEEL, poissons_ratio=0.3)
     scene = bd.Scene(strip, bd.Mount(0.215), physics="auto")

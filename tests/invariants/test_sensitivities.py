@@ -187,6 +187,7 @@ def test_the_derivative_by_speed_of_elements_keeps_its_digits():
     assert (fem.error < 1e-3 * np.abs(ritz.derivative)).all()
 
 
+@pytest.mark.slow
 def test_the_length_of_a_blade_of_many_stations_has_a_derivative_by_elements():
     """Nearby lengths may have meshes of another size: smaller steps do not."""
     rng = np.random.default_rng(0)

@@ -458,6 +458,7 @@ def test_mistakes_are_named(run, case: str) -> None:
     assert all(part in err for part in parts), err
 
 
+@pytest.mark.slow
 def test_torsion_has_a_line_of_its_own() -> None:
     strip = bd.Beam.rectangular(0.1, 0.03, 0.001, 200e9, 7850.0, poissons_ratio=0.3)
     plate = bd.Scene(strip, bd.Mount(0.1, np.pi), physics=bd.Physics(2, camber=True, torsion=True))

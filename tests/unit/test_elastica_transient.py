@@ -141,6 +141,7 @@ def test_refuses_an_integrator_of_linear_equations() -> None:
 IN_SPACE = bd.Physics(planes=2, rotary_inertia=True, torsion=True, large_deflection=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("physics", "bending_angle"), [(ELASTICA, 0.0), (IN_SPACE, 0.5)])
 def test_finite_elements_move_as_polynomials_do(physics: bd.Physics, bending_angle: float) -> None:
     """Their coordinates differ from nodal values; modes taken for those moved the tip by a tenth."""

@@ -275,6 +275,7 @@ def test_a_blade_that_coils_is_followed_to_an_angle_alone(monkeypatch: pytest.Mo
     assert 0 < short.none_below < whole.none_below
 
 
+@pytest.mark.slow
 def test_a_search_ends_where_a_basis_does_not_resolve_the_boundary_layers() -> None:
     """At 24 times the first frequency, steps of this basis get ever shorter; the search took minutes."""
     strip = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0, poissons_ratio=0.3)

@@ -196,6 +196,7 @@ def test_beside_the_critical_speed(beside):
         bd.frequency_response(SCENE, critical * (1 + beside), [1.0, 5.0])
 
 
+@pytest.mark.slow
 def test_sensitivities_of_a_scene_with_layers(finished):
     """By the coupling, which is negative, and by a begin at 0; the load changes no natural mode."""
     given = with_numbers(SCENE, {"harvester.resistance": math.inf, "harvester.start": 0.005})
@@ -301,6 +302,7 @@ def test_summary_and_picture_give_the_best_resistance_the_digits_of_the_table():
     assert f"best, {digits}" in best.plot().get_legend_handles_labels()[1]
 
 
+@pytest.mark.slow
 def test_the_error_of_a_best_resistance_counts_how_flat_the_power_is():
     """A load that alone damps takes all power of nearly white noise: the power hardly depends on it."""
     undamped = replace(SCENE, damping_ratio=0.0, motion=bd.RollingWheel(0.3, 55.0))
@@ -331,6 +333,7 @@ def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
     assert " 1 mode," in " ".join(printed.split()) and "Resonances" not in printed  # at one speed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("root_stiffness", [math.inf, 10.0])
 def test_a_harvester_that_begins_in_equilibrium_stays_there_without_voltage(root_stiffness):
     layered = bd.Harvester(**CERAMIC, resistance=1e5).on(STRIP)

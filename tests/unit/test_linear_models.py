@@ -200,6 +200,7 @@ def test_poles_of_all_functions_are_the_natural_frequencies():
     np.testing.assert_allclose(found, known, rtol=1e-10)
 
 
+@pytest.mark.slow
 def test_a_road_may_go_on(run):
     asked = ("random", FILE, "--road", "C", "--velocity", "90 km/h")
     code, _, err = run(*asked)

@@ -62,6 +62,7 @@ def test_errors_of_poles_cover_those_of_many_more_functions(kept, damper):
     np.testing.assert_array_equal(vars(bd.state_space(scene, 50.0, modes=kept))["error"], found.error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ends", [(0.5, 0.501), (0.387, 0.3895, 0.782)])
 @pytest.mark.parametrize("elements", [100, 200])
 def test_errors_of_poles_contain_the_rounding_of_short_elements(ends, elements):

@@ -248,6 +248,7 @@ def test_steady_response_is_what_remains_of_a_transient():
     assert still == pytest.approx(expected, rel=2e-3)  # and the mean of Coriolis forces
 
 
+@pytest.mark.slow
 def test_errors_cover_a_sudden_start():
     """Gravity that acts at once, with few modes, against many."""
     scene = bd.Scene(BEAM, OUTWARD, bd.SteadyRotation(5.0), gravity=G)

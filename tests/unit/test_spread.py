@@ -115,6 +115,7 @@ def test_a_property_that_varies_has_a_factor():
     assert np.isfinite(bd.spread(scene, {"beam.scale.thickness": "+-1%"}, **FEW).indices.total).all()
 
 
+@pytest.mark.slow
 def test_the_strip_under_layers_has_a_section():
     layered = bd.load_scene("examples/bimorph.toml")
     made = bd.spread(layered, {"beam.density": "+-2%"}, **FEW)

@@ -131,6 +131,7 @@ def test_other_speeds_and_chunks_do_not_change_a_bit_of_a_case(found, given):
         np.testing.assert_array_equal(getattr(found, name)[i], getattr(other, name)[j])
 
 
+@pytest.mark.slow
 def test_modes_that_miss_the_tolerance_are_named():
     sudden = replace(SCENE, motion=bd.SpinUp(55.0, 1e-9), mount=bd.Mount(0.215, 0.3))
     found = bd.sweep(sudden, [30.0], (0.005, 0.01))

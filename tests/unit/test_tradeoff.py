@@ -374,6 +374,7 @@ def test_the_command_prints_and_writes(command, tmp_path):
     assert (code, "--force" in err) == (BAD_INPUT, True)
 
 
+@pytest.mark.slow
 def test_the_command_measures_motion(command):
     code, out, _ = command(MOVING, "--t-end", "0.1 s", "--modes", 1, "--budget", "5 s")
     assert code == DONE

@@ -261,6 +261,7 @@ def test_one_mode_fewer_than_chosen_would_miss_the_tolerance() -> None:
     assert fewer.mode_error > 1e-6
 
 
+@pytest.mark.slow
 def test_modes_chosen_serve_a_stock_integrator_and_times_too() -> None:
     t = np.linspace(0, 0.02, 11)
     ours, stock = (bd.simulate(ROLLING, 0.02, method=m, t_eval=t, tolerance=1e-6) for m in ("auto", "DOP853"))
@@ -277,11 +278,13 @@ def test_initial_coordinates_are_those_of_the_refined_model_too() -> None:
     np.testing.assert_allclose(run.refined.velocities[0], [0, 1e-4, 0, 0], rtol=0, atol=1e-17)
 
 
+@pytest.mark.slow
 def test_modes_left_out_of_the_largest_model_are_not_known() -> None:
     run = bd.simulate(ROLLING, 0.01, modes=None, discretization=bd.Fem(100))
     assert run.mode_error == np.inf
 
 
+@pytest.mark.slow
 def test_modes_that_cannot_meet_the_tolerance_are_named_after_seconds() -> None:
     """A blow excites all modes: the truncation error falls with the square of their number only."""
     blow = replace(HARVESTER, mount=bd.Mount(0.215, 0.3), motion=bd.SpinUp(50.0, 1e-9))
@@ -330,6 +333,7 @@ def test_time_error_sees_what_the_series_for_a_modulated_beam_leaves_out() -> No
         assert run.time_error <= run.request.tolerance * run.largest
 
 
+@pytest.mark.slow
 def test_tolerance_below_rounding_ends() -> None:
     """Finer steps only add rounding there: the run ends with the error that it has, and says it."""
     run = bd.simulate(ROLLING, 10.0, 5, tolerance=1e-12)
