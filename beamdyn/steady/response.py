@@ -37,6 +37,7 @@ from beamdyn.steady.periodic_system import check_steady_state, name_line
 from beamdyn.steady.vibration import (
     UNSTABLE,
     WITHOUT_STABLE_MEAN,
+    Vibration,
     add_static,
     choose_vibrating,
     combine_pairs,
@@ -181,6 +182,13 @@ class SteadyResponse(StatesModelError):
             neither | (self.refined.amplitude == self.amplitude), 0.0, np.nan_to_num(difference, nan=np.inf)
         )
 
+    def has_enough_modes(self) -> bool:
+        """Return whether `mode_error` meets the tolerance, and `refined` has all modes that may resonate."""
+        finer = self.refined
+        if finer is None or (self.mode_error > self.request.tolerance).any():
+            return False
+        return finer.request.free.contains_resonances(finer.stable)
+
     def to_dict(self) -> dict[str, Any]:
         """Convert the result to numbers, lists and strings, including its errors."""
         more = {"mode_error": plain(self.mode_error), "left_out_speeds": self.left_out_speeds.tolist()}
@@ -260,7 +268,8 @@ def steady_response(
     modes : int or "auto"
         Number of modes at rest of each uncoupled displacement (such as bending in each plane).  "auto" takes
         modes at the slowest and at the fastest speed, with the static responses to the loads there: the
-        smallest modal basis whose truncation error meets the tolerance.
+        smallest modal basis, of up to 13 modes, whose truncation error meets the tolerance and which more
+        modes that the periodic coefficients may excite do not make unstable.  Stability is that of the modes.
     harmonics : int, optional
         Number of interactions with the periodic stiffness whose spectral lines are kept: 0 keeps the lines of
         the load, 1 also the lines that their product with the stiffness adds, and so on.  If not given, as
@@ -323,10 +332,7 @@ class ResponseRequest(FieldsOnly):
         start = perf_counter()
         scene, speeds, motion = self.scene, self.speeds, check_steady_state(self.scene.motion)
         vibration = vibration_of(self.model, self.basis, motion, speeds)
-        # The shapes of static responses have frequencies that are no mode's, with which nothing resonates.
-        modes = replace(self.basis, static=())
-        free = vibration_of(self.model, modes, motion, speeds) if self.basis.static else vibration
-        rate, rate_error, status, undecided = free.stability()
+        rate, rate_error, status, undecided = (self.free if self.basis.static else vibration).stability()
         used, c, error = solve_parts(vibration.parts, vibration.tips, self.harmonics, self.tolerance)
         stable = (status == "stable") & np.isfinite(c).all(axis=(1, 2))
         c[~stable], error[~stable] = np.nan, np.nan
@@ -387,7 +393,7 @@ class ResponseRequest(FieldsOnly):
             return None if (response.request.basis.modes or 0) >= _MOST_MODES else response.refined
 
         first = replace(self, basis=self.smallest_basis()).run()
-        return refine(first, finer, lambda found: not (found.mode_error > self.tolerance).any())
+        return refine(first, finer, SteadyResponse.has_enough_modes)
 
     def smallest_basis(self) -> ModalBasis:
         """Return the smallest modal basis, with which the search for a sufficient basis starts.
@@ -408,6 +414,12 @@ class ResponseRequest(FieldsOnly):
             return ()
         speed = np.minimum(np.abs(self.speeds), _HIGHEST_SPEED * self.model.solver.critical_speed)
         return tuple(np.unique([speed.min(), speed.max()]).tolist())
+
+    @property
+    def free(self) -> Vibration:
+        """Equations of free vibration, in modes alone: nothing resonates with shapes of static responses."""
+        motion = check_steady_state(self.scene.motion)
+        return vibration_of(self.model, replace(self.basis, static=()), motion, self.speeds)
 
     @cached_property
     def model(self) -> Model:

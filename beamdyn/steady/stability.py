@@ -37,7 +37,7 @@ from beamdyn.steady.harmonic_balance import convolution_matrix
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, generate_harmonics
 
 # Largest number of interactions with the periodic coefficients through which two modes resonate.
-_TONGUE_ORDER = 2
+TONGUE_ORDER = 2
 _ROUNDING = 1e-9  # largest real part, over the largest |eigenvalue|, that counts as rounding error
 # Relative change of the growth rate by one more interaction, below which the rate has converged.
 _SETTLED = 1e-6
@@ -277,7 +277,7 @@ class _MeanMotion:
         Only discs of modes of opposite energy are compared.  `considered`, shape (S,), marks the pairs of
         phase rates to be examined.
         """
-        levels = generate_harmonics([(0, 0)], self.coupling, _TONGUE_ORDER)
+        levels = generate_harmonics([(0, 0)], self.coupling, TONGUE_ORDER)
         harmonics = [h for level in levels for h in level]
         overlap = self._overlap(harmonics, self.radius) & considered[:, None, None, None]
         undamped = np.abs(np.real(self.sigma)).max(axis=1) <= _ROUNDING * np.abs(self.sigma).max(axis=1)

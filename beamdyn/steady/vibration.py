@@ -29,7 +29,7 @@ from beamdyn.steady.periodic_system import (
     periodic_system,
     split_uncoupled,
 )
-from beamdyn.steady.stability import fastest_growth
+from beamdyn.steady.stability import TONGUE_ORDER, fastest_growth
 
 UNSTABLE = "parametric instability"
 _TURNING, _PAST = "turns freely about the root", "past the critical speed"
@@ -81,6 +81,21 @@ class Vibration:
         status = np.where(rate > 0, UNSTABLE, "stable")
         status = np.select([*self.lost.values()], [*self.lost], status)
         return rate, error, status, (np.abs(rate) < error) & ~np.isin(status, [*self.lost])
+
+    def contains_resonances(self, chosen: np.ndarray) -> bool:
+        """Return whether at chosen speeds no mode above those of the equations can be unstable.
+
+        Where two modes resonate, their frequencies add up to that of a product of periodic coefficients.
+        """
+        for part in (part[chosen] for part, _ in self.parts):
+            if not part.coupling:
+                continue
+            largest = np.abs(part.rates @ np.array([*part.coupling]).T).max(axis=1)
+            K, _, M = part.mean
+            squared = np.real(np.linalg.eigvals(np.linalg.solve(M, K))).max(axis=1)
+            if (squared < (TONGUE_ORDER * largest) ** 2).any():
+                return False
+        return True
 
 
 def vibration_of(model: Model, basis: ModalBasis, motion: Motion | None, speeds: np.ndarray) -> Vibration:
