@@ -187,7 +187,7 @@ class SteadyResponse(StatesModelError):
         finer = self.refined
         if finer is None or (self.mode_error > self.request.tolerance).any():
             return False
-        return finer.request.free.contains_resonances(finer.stable)
+        return finer.request.free.contains_resonances(finer.stable, finer.request.basis.modes or 1)
 
     def to_dict(self) -> dict[str, Any]:
         """Convert the result to numbers, lists and strings, including its errors."""

@@ -82,18 +82,19 @@ class Vibration:
         status = np.select([*self.lost.values()], [*self.lost], status)
         return rate, error, status, (np.abs(rate) < error) & ~np.isin(status, [*self.lost])
 
-    def contains_resonances(self, chosen: np.ndarray) -> bool:
-        """Return whether at chosen speeds no mode above those of the equations can be unstable.
+    def contains_resonances(self, chosen: np.ndarray, modes: int) -> bool:
+        """Return whether at chosen speeds no mode above the `modes` lowest of each part can be unstable.
 
         Where two modes resonate, their frequencies add up to that of a product of periodic coefficients.
+        Coordinates beyond these modes span modes at other speeds, and have higher frequencies than any mode.
         """
         for part in (part[chosen] for part, _ in self.parts):
             if not part.coupling:
                 continue
             largest = np.abs(part.rates @ np.array([*part.coupling]).T).max(axis=1)
             K, _, M = part.mean
-            squared = np.real(np.linalg.eigvals(np.linalg.solve(M, K))).max(axis=1)
-            if (squared < (TONGUE_ORDER * largest) ** 2).any():
+            squared = np.sort(np.real(np.linalg.eigvals(np.linalg.solve(M, K))))[:, :modes]
+            if (squared[:, -1] < (TONGUE_ORDER * largest) ** 2).any():
                 return False
         return True
 

@@ -130,13 +130,13 @@ def test_a_stiffness_that_varies_slowly_shifts_no_growth_rate() -> None:
     assert (slow.growth_rate_error < 1e-3 * np.abs(slow.growth_rate)).all() and slow.warnings == ()
 
 
-@pytest.mark.parametrize("mode", [5, 6])
-def test_automatic_modes_include_those_that_the_road_makes_unstable(mode: int) -> None:
+@pytest.mark.parametrize(("mode", "others"), [(5, []), (6, []), (7, [5.0])])
+def test_automatic_modes_include_those_that_the_road_makes_unstable(mode: int, others: list[float]) -> None:
     """Two modes with static responses suffice for the amplitude, which a weak road hardly changes."""
     mount, speed = bd.Mount(0.215, setting_angle=math.pi / 2), 50.0
     frequencies = bd.natural_modes(replace(HARVESTER, mount=mount), speed, mode).frequency
     waves = 4 * math.pi * frequencies[-1] / speed - 1  # twice the frequency is that of road and rotation
     scene = rolling(waves, 1e-3, mount=mount, gravity=9.81)
-    found, many = (bd.steady_response(scene, [speed], modes) for modes in ("auto", 8))
-    assert (found.status[0], many.status[0]) == ("parametric instability",) * 2
-    assert found.growth_rate[0] == pytest.approx(many.growth_rate[0], rel=1e-3)
+    found, many = (bd.steady_response(scene, [*others, speed], modes) for modes in ("auto", 9))
+    assert (found.status[-1], many.status[-1]) == ("parametric instability",) * 2
+    assert found.growth_rate[-1] == pytest.approx(many.growth_rate[-1], rel=1e-3)
