@@ -33,7 +33,7 @@ import numpy as np
 
 from beamdyn.steady.periodic_system import MeanModes, Pair, PeriodicSystem, list_harmonics, select_harmonics
 
-_MOST_ENTRIES = 10**7  # largest number of matrix entries solved as one batch: 80 MB
+_MOST_ENTRIES = 10**7  # largest number of matrix entries solved as one batch: 80 MB, or 160 MB if complex
 # Largest number of terms of the series: enough to converge if each term divides the error by 5.
 _MOST_TERMS = 24
 _SETTLED = 4 * np.finfo(float).eps  # relative change by one term below which the series has converged
