@@ -196,6 +196,7 @@ def test_the_error_of_a_loss_of_stability_holds_against_a_far_finer_basis() -> N
     assert found.error / 10 < found.speed / math.sqrt(finer.squared) - 1 < found.error
 
 
+@pytest.mark.slow
 def test_a_loss_of_stability_is_told_to_be_inaccurate_and_past_linear_elasticity() -> None:
     strain, _, error = bd.critical_point(OBLIQUE, bd.Ritz(20)).warnings
     assert error.startswith("the estimated relative error of the critical speed is 0.")

@@ -101,6 +101,7 @@ def test_a_hinge_at_rest_has_no_frequency() -> None:
     assert found.covered.all() and found.true[0] == 0.0
 
 
+@pytest.mark.slow
 def test_finite_elements() -> None:
     found = solve_and_compare(twisted(30.0), 5.0, 1e-4, "fem")
     assert found.covered.all() and max(found.stated) <= 1e-4

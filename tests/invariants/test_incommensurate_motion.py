@@ -89,6 +89,7 @@ def test_quasi_periodic_mathieu_equation(rate, push, damping):
     assert found.status == ("unstable" if wanted > 1e-6 else "stable" if damping else "undecided")
 
 
+@pytest.mark.slow
 def test_an_exponent_decides_where_phases_never_meet():
     unstable = bd.floquet_multipliers(pulsating(8.801033599927, 0.1, 3.0, 0.002), 2)
     assert (unstable.method, unstable.status) == ("exponent", "unstable")

@@ -89,6 +89,7 @@ def test_layers_of_the_strips_material_make_a_thicker_strip(connection):
         np.testing.assert_allclose(found, wanted, rtol=1e-9)  # the stated errors of both
 
 
+@pytest.mark.slow
 def test_short_and_open_circuit_by_two_discretizations():
     for resistance in (0.0, math.inf):
         scene = bd.Scene(layers("series", resistance=resistance, end=0.03).on(STRIP), physics=CAMBER)

@@ -127,6 +127,7 @@ def test_resonances_say_what_shear_changes() -> None:
     assert np.abs(change).max() > 1e-3
 
 
+@pytest.mark.slow
 def test_a_short_transient_says_what_large_deflection_and_shear_change() -> None:
     moving = replace(SCENE, gravity=0.0, physics=bd.Physics(), motion=bd.SpinUp(100.0, duration=0.1))
     run, bent = bd.simulate(moving, 0.3), bd.simulate(replace(moving, physics=LARGE), 0.3)

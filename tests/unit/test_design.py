@@ -76,6 +76,7 @@ def test_where_no_design_meets_the_targets_the_nearest_is_said(targets, is_sure)
     assert ("no other design comes nearer" in " ".join(found.sentences())) == is_sure
 
 
+@pytest.mark.slow
 def test_a_number_has_an_effect_where_an_answer_is_largest():
     """At the peak of a resonance the amplitude is level over the thickness, which stays there."""
     target = bd.Target("amplitude", best="largest", speed=55.0)
@@ -131,6 +132,7 @@ def test_that_there_is_none_is_proven_where_each_mode_is_monotone(name, bounds, 
         assert not turning.proof  # rotation adds what depends on the numbers in other ways
 
 
+@pytest.mark.slow
 def test_targets_that_are_met_are_mentioned_beside_those_that_are_missed_for_their_sake():
     apart = [bd.Target("frequencies", at_least=80.0), bd.Target("critical_speed", at_most=100.0)]
     for others in ([], [bd.Target("critical_speed", at_least=50.0)]):

@@ -317,6 +317,7 @@ def test_the_best_resistance_of_slow_motion_is_inverse_to_the_speed():
     assert slow.resistance_error < slow.resistance
 
 
+@pytest.mark.slow
 def test_the_best_resistance_counts_the_power_of_a_random_road(capsys):
     road = bd.RoadRoughness("A", highest=10.0)
     best = bd.best_resistance(SCENE, 50.0, modes=1, road=road)

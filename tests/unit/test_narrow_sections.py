@@ -66,6 +66,7 @@ def test_a_chosen_physics_says_it_too() -> None:
     assert modes.scene.physics.camber and said(modes.warnings)
 
 
+@pytest.mark.slow
 def test_a_short_narrow_part_is_seen() -> None:
     width = bd.Table([0.0, 0.5, 0.5001, 0.5002, 1.0], [0.01, 0.01, 0.003, 0.01, 0.01])
     beam = bd.Beam.rectangular(0.05, width, 1e-3, 200e9, 7850.0, poissons_ratio=0.3)

@@ -140,6 +140,7 @@ def test_designs_of_a_sample_differ_from_the_other_in_one_input():
     assert (np.sort(np.floor(8 * blocks), axis=1) == np.arange(8)).all()
 
 
+@pytest.mark.slow
 def test_samples_follow_from_the_seed_and_from_nothing_else():
     """Parts of 1024 answers, so that two workers have some."""
     given = {"beam.thickness": "+-2%", "beam.length": "+-1%"}

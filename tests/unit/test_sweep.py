@@ -260,6 +260,7 @@ def test_lambdas_are_refused_by_stores_and_pools(where, tmp_path):
     assert not (tmp_path / "store").exists()
 
 
+@pytest.mark.slow
 def test_peaks_in_two_planes_are_those_of_single_transients(tmp_path):
     """The magnitude of a vector and its components; a store keeps them; a plane without loads stays."""
     beam = bd.Beam.from_stiffness(1.2, 2.0, 60.0, second_bending_stiffness=900.0, twist=0.5)

@@ -320,6 +320,7 @@ def test_a_wheel_leaves_the_road_only_where_there_is_one() -> None:
     assert ["leaves the road" in " ".join(each) for each in said] == [False, True]
 
 
+@pytest.mark.slow
 def test_time_error_sees_what_the_series_for_a_modulated_beam_leaves_out() -> None:
     """Against DOP853, which shares no code: also where interpolation between few steps is most of it."""
     beam = bd.Beam.rectangular(0.05, 0.01, 0.0002, 200e9, 7850.0)

@@ -102,6 +102,7 @@ def test_mirror() -> None:
     assert np.abs(one.deflection(T, 1) + two.deflection(T, 1)).max() <= bound
 
 
+@pytest.mark.slow
 def test_second_route() -> None:
     """DOP853 on equations along b2, b3 of the facts, written here, over the same polynomials."""
     count, psi, phi, radius = 3, 0.4, 2.6, 0.3

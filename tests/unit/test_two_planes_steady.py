@@ -147,6 +147,7 @@ def first_order(equations: Equations, motion: Motion, t: np.ndarray) -> tuple[np
     return A, b
 
 
+@pytest.mark.slow
 def test_twisted_response_is_the_tail_of_a_damped_transient() -> None:
     """Both components, phase by phase, on a road that does not repeat with the turns."""
     scene, speed = replace(TWISTED, mount=bd.Mount(0.215, math.pi - 0.2, 0.8), damping_ratio=0.1), 60.0
