@@ -65,6 +65,7 @@ def test_limits_are_those_of_functions_on_each_segment(scene: bd.Scene) -> None:
     np.testing.assert_allclose(found.tip, expected.tip, rtol=1e-6, atol=1e-6)  # modes err by the root
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [1, 7, 17, 19])
 def test_stated_errors_of_random_stations(number: int) -> None:
     scene, speed = random_station_scene(np.random.default_rng([16, number]))

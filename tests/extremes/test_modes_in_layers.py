@@ -89,6 +89,7 @@ def test_stated_errors_of_random_tip_bodies_at_any_tolerance() -> None:
         assert (true - known <= 1.5 * stated).all(), number
 
 
+@pytest.mark.slow
 def test_random_tables_have_one_answer_by_both_discretizations() -> None:
     """Scenes 380 to 389: short segments, point springs, bodies at the tip."""
     for number in range(380, 390):

@@ -33,6 +33,7 @@ def solve_directly(matrices, load, output):
     return np.array(found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("scene", "modes"), [(SCENE, "auto"), (SCENE, 20), (TWO_PLANES, "auto")])
 def test_sixty_elements_against_a_direct_complex_solve_of_the_same_matrices(scene, modes):
     M = bd.matrices(scene, SPEED, discretization=ELEMENTS)

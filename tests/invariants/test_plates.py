@@ -328,6 +328,7 @@ def test_stress_along_the_span_is_in_balance_with_the_moment():
     assert abs(found.strain[0, 0, 1] * 200e9 / found.stress[0, 0, 1]) == pytest.approx(0.91, rel=5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("elements", [40, 80])
 def test_stated_errors_of_elements_count_the_functions_across(elements):
     scene = bd.Scene(strip((0.05, 0.01, 0.0002), 0.3), bd.Mount(0.215), physics=PLATE)

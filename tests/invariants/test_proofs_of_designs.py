@@ -174,6 +174,7 @@ def test_nothing_is_proven_beyond_what_an_argument_covers(scene, name, bounds, w
 RANDOM = [(1, 24), *(pytest.param(seed, 60, marks=pytest.mark.slow) for seed in range(1, 12))]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "count"), RANDOM)
 def test_nothing_is_proven_against_a_design_that_is_there(seed, count):
     random = np.random.default_rng(seed)

@@ -96,6 +96,7 @@ def test_scales_of_a_blade_of_many_stations(name):
     assert (found.error < 1e-7).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["length", "point_mass[0].position", "point_spring[0].position"])
 def test_places_of_points_on_a_blade_of_many_stations(name):
     """Relative to the length, they move: the same functions are integrated over other cells."""

@@ -82,6 +82,7 @@ def test_fast_designs_take_finer_bases():
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     [{}, {"damping_ratio": 0.01}, {"physics": bd.Physics(stretch=True)}],

@@ -30,6 +30,7 @@ def by_cross_section(searle, nu):
     return weights @ (bending + stretching) / 2 / (kappa**2 / 12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("nu", [0.3, 0.45])
 @pytest.mark.parametrize("searle", [1.0, 3.0, 10.0])
 def test_stiffness_is_that_of_the_cross_section(searle, nu):

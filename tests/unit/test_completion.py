@@ -40,6 +40,7 @@ def test_bash_completes(script, tmp_path, program, words, completed):
     assert (done.stdout.split(), done.stderr) == ([completed], "")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shell", ["zsh", "fish"])
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_other_shells_have_all_commands(script, program, shell):

@@ -129,6 +129,7 @@ def on_a_grid(a: np.ndarray, h: np.ndarray, count: int = 360) -> np.ndarray:
     return np.hypot.reduce(u, axis=1).max(axis=(1, 2))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("real", [True, False], ids=["symmetric", "any"])
 @pytest.mark.parametrize("directions", [1, 2])
 def test_largest_of_a_sum_of_lines(directions: int, real: bool) -> None:

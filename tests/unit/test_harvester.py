@@ -106,6 +106,7 @@ def test_studies_solve_each_design_as_by_itself(resistance, path, values):
     np.testing.assert_allclose(found.value, wanted, rtol=1e-9)  # the errors are below that
 
 
+@pytest.mark.slow
 def test_studies_ask_for_power_and_strain_of_the_layers():
     vary = {"harvester.resistance": [1e5, 3e5]}
     alone = [bd.harvest(with_numbers(SCENE, {"harvester.resistance": r}), [60.0]) for r in (1e5, 3e5)]

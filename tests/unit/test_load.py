@@ -138,6 +138,7 @@ def test_the_model_of_a_request_is_chosen_once_and_left_out_of_pickles(made, nam
     assert again.model == request.model
 
 
+@pytest.mark.slow
 def test_results_come_back_from_a_pool_of_new_processes(made):
     context = multiprocessing.get_context("spawn")
     calls = [

@@ -59,6 +59,7 @@ def named_classes(text):
     return {name for pair in CLASS.findall(text) for name in pair if name}
 
 
+@pytest.mark.slow
 def test_messages_name_what_exists():
     unknown = {
         (name, where)

@@ -441,6 +441,7 @@ def test_a_beam_of_section_matrices_is_a_beam_in_space_from_the_start() -> None:
     np.testing.assert_allclose(chosen.frequency, given.frequency, rtol=1e-12)  # the same model
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "speed"), [("iea_15_blade", 0.8), ("swept_blade", 78.5)])
 def test_equilibria_of_a_beam_that_straight_equations_refuse_begin_in_space(name: str, speed: float) -> None:
     """A swept blade that bends in one plane alone has another deflection."""

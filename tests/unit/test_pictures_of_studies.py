@@ -77,6 +77,7 @@ def test_levels_are_round_numbers(low, high, expected):
     np.testing.assert_allclose(levels_of(spaced(low, high, 1000)), expected, rtol=1e-12)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "x", [np.linspace(-0.1, 0.1, 5), np.geomspace(0.2, 3.0, 5), np.geomspace(1e-3, 1e3, 5)]
 )

@@ -53,6 +53,7 @@ def test_what_was_not_written_is_missing(tmp_path):
 RECORD = {"cases": [[0.1 + 0.2, 1e-5, "done"], [1 / 3, 2.5e-300, "failed: grows"]], "speeds": [50.0, 60.0]}
 
 
+@pytest.mark.slow
 def test_no_flipped_bit_gives_another_record(tmp_path):
     store = Store(tmp_path, "test")
     store.write("key", RECORD)
