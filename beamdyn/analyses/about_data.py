@@ -1,4 +1,4 @@
-"""Measured data, compared with a scene or identifying its parameters, and parameters for wanted results."""
+"""A scene and its data or wishes: comparison, identification, and design for wanted results."""
 
 from __future__ import annotations
 

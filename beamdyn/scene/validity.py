@@ -71,15 +71,15 @@ def refuse_tip_load(scene: Scene) -> None:
         raise InvalidValue("tip_load.force", scene.tip_load.force, bound, remedy)
 
 
-def refuse_buckling_load(scene: Scene) -> None:
-    """Refuse a load at the tip that buckles the beam at rest within rounding (an `InvalidValue`)."""
-    if scene.tip_load.acts:
-        load = scene.tip_load
-        name = "force" if any(load.force) else "moment"
-        bound = "within rounding it is the load that buckles the beam at rest: the lowest frequency is 0"
-        remedy = "give a load that differs from it by more than a part in 1e9"
-        unit = "N" if name == "force" else "N m"
-        raise InvalidValue(f"tip_load.{name}", getattr(load, name), bound, remedy, unit)
+def refuse_vanishing_frequency(scene: Scene) -> None:
+    """Refuse a load at the tip that lowers a frequency at rest to 0 within rounding (`InvalidValue`)."""
+    load = scene.tip_load
+    name, unit = ("force", "N") if any(load.force) else ("moment", "N m")
+    bound = "within rounding the lowest frequency under it is 0, beside which the others are lost"
+    remedy = (
+        "give a smaller load" if load.follows else "give one that differs from it by a part in 1e9 or more"
+    )
+    raise InvalidValue(f"tip_load.{name}", getattr(load, name), bound, remedy, unit)
 
 
 def warn_of_left_out(scene: Scene) -> Iterator[Statement]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 
 import numpy as np
 
@@ -44,7 +43,7 @@ def plot_locus(
     units : DisplayUnits, optional
         Units of the axes; the arrays are SI.
     quantity : str, optional
-        What is drawn, as the label of the axis says it.
+        Label of the vertical axis: the quantity drawn, with its unit.
 
     Returns
     -------
@@ -58,9 +57,31 @@ def plot_locus(
     return add_legend(ax) if critical_speed is None else mark_critical(ax, critical_speed, units=units)
 
 
-# Frequencies do not show whether a mode grows: above the critical speed, draw growth rates [1/s] below the
-# frequencies; they have the same colours.
-plot_growth = partial(plot_locus, quantity="growth rate [1/s]")
+def plot_growth(
+    speeds: np.ndarray,
+    growth_rate: np.ndarray,
+    ax: Axes | None = None,
+    labels: Sequence[str] | None = None,
+    critical_speed: float | None = None,
+    units: DisplayUnits = SI_UNITS,
+) -> Axes:
+    """Draw growth rates of modes over speed, one line per mode, in the colours of `plot_locus`.
+
+    Frequencies do not show whether a mode grows: above the critical speed, draw this plot below the
+    frequencies.
+
+    Parameters
+    ----------
+    speeds, ax, labels, critical_speed, units
+        As for `plot_locus`.
+    growth_rate : ndarray, shape (S, m)
+        Growth rates [1/s]: positive where a mode is unstable, negative where it is damped.
+
+    Returns
+    -------
+    Axes
+    """
+    return plot_locus(speeds, growth_rate, ax, labels, critical_speed, units, "growth rate [1/s]")
 
 
 def plot_loci_by_angle(

@@ -1,4 +1,4 @@
-"""Decks: input files of other programs that describe a blade, read as scenes."""
+"""Decks: descriptions of a blade in input files of other programs or in CSV tables, read as scenes."""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from beamdyn.modes.modal.eigenproblem import Eigen, Eigensolver, explained
 from beamdyn.modes.modal.model import Model
 from beamdyn.modes.modal.solvers import eigenvalues_over_speeds, solve_over_speeds, solver_of
 from beamdyn.scene.scene import Scene
-from beamdyn.scene.validity import refuse_buckling_load
+from beamdyn.scene.validity import refuse_vanishing_frequency
 
 UNRESOLVED = 0.3  # relative error above which a comparison of two models gives no estimate
 # Ratio of the difference between successive meshes to the previous difference: the smallest that is used, for
@@ -28,6 +28,7 @@ LEAST_RATIO, _UNKNOWN, _FALLING = 0.2, 0.5, 0.8
 # as refined everywhere, so that their difference shows the order of convergence (1/2 if all elements are
 # halved).
 _HALVED = 0.7
+_VANISHED = 1e-9  # squared frequency, over the lowest without a load at the tip, that is 0 within rounding
 _OF_ENTRIES = 3 * np.finfo(float).eps  # three standard deviations of the rounding error of entries
 # Ratio of the difference between the two coarser meshes to the smallest stated error, as the difference
 # between the two finer ones may be small by chance.
@@ -114,7 +115,9 @@ def solve_with_error(model: Model, speeds: np.ndarray, modes: int, extra: int = 
     scene, mount = model.scene, model.scene.mount
     fine = solve_over_speeds(model.solver, speeds, min(modes + extra, model.solver.size))
     if fine.eigenvalue.shape[1] < modes:  # beside the others, the mass of some modes is within rounding
-        refuse_buckling_load(scene)
+        lowest = (np.abs(fine.eigenvalue) ** 2).min(initial=np.inf)
+        if scene.tip_load.acts and lowest < _VANISHED * model.solver.lowest_at_rest:
+            refuse_vanishing_frequency(scene)
         with explained():
             raise np.linalg.LinAlgError
     coarse = eigenvalues_over_speeds(model.coarse_solver, speeds, modes)

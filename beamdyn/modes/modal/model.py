@@ -119,8 +119,9 @@ class Model(FieldsOnly):
     def coarse_solver(self) -> Eigensolver:
         """Eigensolver of the coarser model that error estimates use for comparison."""
         if self.scene.physics.large_deflection:
-            has_guided = self._has_many_elements
-            return self.coarser.deflected if has_guided else self.deflected.guiding(self.compared.bent)
+            if self._has_many_elements:
+                return self.coarser.deflected
+            return self.deflected.guiding(self.compared.bent)
         coarse = self.equations.coarse
         if coarse is None:
             return self.coarser.solver
@@ -396,7 +397,7 @@ def _static_responses(
 def span_modes(
     pencil: SteadyPencil, modes: int, speeds: Sequence[float], further: Sequence[np.ndarray] = ()
 ) -> np.ndarray:
-    """Compute mass-normalised shapes that span the lowest conservative modes and further shapes.
+    """Compute mass-normalised shapes that span the lowest conservative modes at speeds, and further shapes.
 
     Parameters
     ----------

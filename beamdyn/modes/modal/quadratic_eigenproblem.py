@@ -53,13 +53,13 @@ def _find_largest(
 ) -> tuple[np.ndarray, np.ndarray] | None:
     """Find the `count` largest eigenvalues of a Hermitian matrix, ascending, and its eigenvectors.
 
-    The vectors are sought in the block Krylov space of the columns `start` and of vectors that no symmetry
-    of the matrix excludes, which grows until more than `count` eigenpairs are exact within rounding.  Return
-    None if they are not when the space has `_MOST_BLOCKS` blocks.
+    The block Krylov space of the columns `start` and of some random columns, which have a part of every
+    eigenvector, grows until more than `count` eigenpairs are exact within rounding.  Return None if they are
+    not with `_MOST_BLOCKS` blocks.
     """
     wanted = slice(-count - _EXTRA // 2, None)
-    generic = np.random.default_rng(0).standard_normal((len(start), _EXTRA))
-    basis, block = np.empty((len(start), 0), dtype=complex), np.concatenate([start, generic], axis=1)
+    random = np.random.default_rng(0).standard_normal((len(start), _EXTRA))
+    basis, block = np.empty((len(start), 0), dtype=complex), np.concatenate([start, random], axis=1)
     products = basis
     for _ in range(_MOST_BLOCKS):
         for _ in range(2):  # the second time removes what rounding has left
